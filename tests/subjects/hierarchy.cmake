@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+sheaf_test(object_hierarchy_test sheaf_hierarchy)
