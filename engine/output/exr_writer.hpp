@@ -44,8 +44,12 @@ struct FrameAttributes {
   std::string scene_sha256, settings_json, strategy, version;
 };
 
-/// Throws Error{io} with the path and the reason. Layers whose size is not width × height, and dwaa with a layer that
-/// it would silently store inexactly (see stored_exactly), are Error{usage}.
+/// DWAA tells colour from data by a channel's last letter, and would put P.Y, N.Y and UV.Y through its lossy transform.
+/// Given the `--aov` names, says why they cannot go with this compression; empty where they can.
+[[nodiscard]] std::string compression_conflict(Compression compression, const std::vector<std::string>& aovs);
+
+/// Throws Error{io} with the path and the reason. Layers whose size is not width × height, attributes that OpenEXR
+/// cannot hold, and a compression_conflict are Error{usage}.
 void write_exr(const std::string& path, const FrameLayers& layers, const FrameAttributes& attributes,
                Compression compression);
 
