@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Client for sheafd, the Sheaf render service: glTF animations in, EXR frames as NumPy arrays out."""
+
+from ._camera import CameraKey, CameraPath
+from ._client import Client
+from ._errors import (
+    ApiError,
+    Conflict,
+    FrameError,
+    InvalidRequest,
+    JobCancelled,
+    JobError,
+    JobFailed,
+    NotFound,
+    ProtocolError,
+    SceneError,
+    SheafError,
+    Timeout,
+    TooLarge,
+    TransportError,
+    Unauthorized,
+    Unavailable,
+)
+from ._exr import Frame, Layer, read_exr
+from ._http import RetryPolicy
+from ._job import Job
+from ._models import Event, FrameState, JobInfo, JobState, Progress
+from ._progress import ProgressBar
+from ._settings import RenderSettings
+from ._stats import DeviceStats, FrameStats, LeftOut, SceneStats, Stats, TestStats, TotalStats
+from ._version import __version__
+
+__all__ = [
+    "ApiError",
+    "CameraKey",
+    "CameraPath",
+    "Client",
+    "Conflict",
+    "DeviceStats",
+    "Event",
+    "Frame",
+    "FrameError",
+    "FrameState",
+    "FrameStats",
+    "InvalidRequest",
+    "Job",
+    "JobCancelled",
+    "JobError",
+    "JobFailed",
+    "JobInfo",
+    "JobState",
+    "Layer",
+    "LeftOut",
+    "NotFound",
+    "Progress",
+    "ProgressBar",
+    "ProtocolError",
+    "RenderSettings",
+    "RetryPolicy",
+    "SceneError",
+    "SceneStats",
+    "SheafError",
+    "Stats",
+    "TestStats",
+    "Timeout",
+    "TooLarge",
+    "TotalStats",
+    "TransportError",
+    "Unauthorized",
+    "Unavailable",
+    "__version__",
+    "read_exr",
+]

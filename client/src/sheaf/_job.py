@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""A job on the service."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Generator, Iterable
+from pathlib import Path
+from typing import Literal
+
+from . import _calls
+from ._errors import JobCancelled, JobFailed, NotFound, ProtocolError, SheafError
+from ._exr import Frame, read_exr
+from ._files import whole_file
+from ._models import Event, JobInfo, JobState, Progress
+from ._names import FrameNames
+from ._progress import ProgressBar
+from ._session import Session
+from ._stats import Stats
+from ._watch import Listen, Poll, SseParser, Watch
+
+
+class Job:
+    """A submitted animation; made by `Client.submit`, `Client.job` and `Client.jobs`.
+
+    What it says about itself is what the service said last: `refresh` and `wait` bring it up to date. Every method
+    that asks the service raises `TransportError`, `ProtocolError` or an `ApiError`, `NotFound` once the job is gone.
+
+    Attributes:
+        info: all that the service said last.
+    """
+
+    def __init__(self, session: Session, info: JobInfo) -> None:
+        self._session = session
+        self.info = info
+
+    def __repr__(self) -> str:
+        return f"Job({self.id!r}, {self.state!r}, {self.progress.done} of {self.progress.total} frames)"
+
+    @property
+    def id(self) -> str:
+        """The job's name on the service."""
+        return self.info.id
+
+    @property
+    def state(self) -> JobState:
+        """queued, running, done, failed or cancelled, as of the last answer."""
+        return self.info.state
+
+    @property
+    def progress(self) -> Progress:
+        """How far the job was at the last answer."""
+        return self.info.progress
+
+    def refresh(self) -> Job:
+        """Asks the service how the job is; returns the job itself."""
+        self.info = self._session.call(_calls.job(self.id))
+        return self
+
+    def events(self, after: str | None = None, timeout: float | None = None) -> Generator[Event, None, None]:
+        """What happens to the job, from its beginning (or after the event with that id) to its end.
+
+        Listens to server-sent events, going on after the last one where the connection is lost, and turns to long
+        polls where streams do not get through.
+
+        Args:
+            after: id of an event; those up to it are left out.
+            timeout: seconds from now after which to stop waiting; None waits for ever.
+
+        Raises:
+            Timeout: the job is not over by then.
+        """
+        deadline = None if timeout is None else self._session.now() + timeout
+        watch = Watch(after, self._session.retry, deadline)
+        while True:
+            step = watch.next_step(self._session.now())
+            begun = self._session.now()
+            news = False
+            pause = 0.0
+            try:
+                for event in self._listen(watch) if isinstance(step, Listen) else self._poll(watch, step):
+                    news = True
+                    watch.heard(event)
+                    yield event
+                    if event.ends_job:
+                        return
+            except SheafError as error:
+                pause = watch.lost(error, streaming=isinstance(step, Listen))
+            else:
+                if not news:
+                    if self.refresh().info.is_over:
+                        return
+                    pause = watch.quiet(self._session.now() - begun, streaming=isinstance(step, Listen))
+            self._session.sleep(watch.pause(pause, self._session.now()))
+
+    def wait(self, progress: Callable[[Progress], object] | bool | None = None, timeout: float | None = None) -> Job:
+        """Waits until the job is over.
+
+        Args:
+            progress: called with every change; True draws a bar on standard error.
+            timeout: seconds; None waits for ever.
+
+        Returns:
+            The job itself, in state "done".
+
+        Raises:
+            JobFailed: it failed; `code` and `message` say why.
+            JobCancelled: it was cancelled.
+            Timeout: it is not over in time. It goes on; `wait` may be called again.
+        """
+        bar = ProgressBar() if progress is True else None
+        report = bar.update if bar else progress if callable(progress) else _no_report
+        try:
+            self.refresh()
+            report(self.progress)
+            if not self.info.is_over:
+                with contextlib.closing(self.events(timeout=timeout)) as events:
+                    for event in events:
+                        self.info = self.info.after(event)
+                        report(self.progress)
+                self.refresh()
+                report(self.progress)
+        finally:
+            if bar:
+                bar.close()
+        return self._unless_bad()
+
+    def frame(self, number: int) -> Frame:
+        """A rendered frame as arrays.
+
+        Raises:
+            NotFound: the job has no such frame.
+            Conflict: it is not rendered yet.
+            FrameError: what came is no frame.
+        """
+        return read_exr(self._session.call(_calls.frame(self.id, number, "exr")), number)
+
+    def frames(self, numbers: Iterable[int] | None = None) -> Generator[Frame, None, None]:
+        """Frames as arrays, one in memory at a time.
+
+        Args:
+            numbers: which; None gives all that are rendered by now.
+
+        Raises:
+            As `frame`.
+        """
+        for number in self._numbers(numbers):
+            yield self.frame(number)
+
+    def preview(self, number: int) -> bytes:
+        """A frame's tone-mapped preview, as PNG.
+
+        Raises:
+            NotFound: the job has no such frame.
+            Conflict: it is not rendered yet.
+        """
+        return self._session.call(_calls.frame(self.id, number, "png"))
+
+    def stats(self) -> Stats:
+        """What the engine measured; see `sheaf.Stats`.
+
+        Raises:
+            Conflict: there is nothing measured yet.
+        """
+        return self._session.call(_calls.stats(self.id))
+
+    def log(self) -> str:
+        """What the renderer printed."""
+        return self._session.call(_calls.log(self.id))
+
+    def cancel(self) -> Job:
+        """Stops the job, keeping the frames that are whole; does nothing where it is over. Returns the job itself."""
+        if not self.refresh().info.is_over:
+            self._session.call(_calls.delete(self.id))
+            self.refresh()
+        return self
+
+    def delete(self) -> None:
+        """Stops the job and removes it with all its frames; does nothing where it is gone already."""
+        try:
+            self._session.call(_calls.delete(self.id))
+        except NotFound:
+            return
+
+    def download(
+        self,
+        folder: str | os.PathLike[str],
+        previews: bool = False,
+        overwrite: bool = False,
+        *,
+        name: str = "frame.####.exr",
+        numbers: Iterable[int] | None = None,
+        on_file: Callable[[int, Path], object] | None = None,
+    ) -> list[Path]:
+        """Fetches frames into a folder, made where it is missing.
+
+        Files appear under their name only when whole. One that is there already with the service's length (and its
+        checksum, where the service gives one) is left alone.
+
+        Args:
+            folder: where to.
+            previews: the PNG beside each frame too.
+            overwrite: fetch again what is there.
+            name: pattern of the names; the run of `#` becomes the frame number.
+            numbers: which frames; None gives all that are rendered by now.
+            on_file: called with frame number and path as each file is there.
+
+        Returns:
+            Paths of all files, fetched or left alone, in frame order.
+
+        Raises:
+            TransportError: a file did not come whole, again and again.
+            OSError: a file cannot be written.
+            ValueError: the name pattern is not one.
+        """
+        names = FrameNames(name)
+        target = Path(folder)
+        target.mkdir(parents=True, exist_ok=True)
+        paths = []
+        for number in self._numbers(numbers):
+            wanted = [(names.frame(number), "exr"), (names.preview(number), "png")]
+            for file_name, kind in wanted if previews else wanted[:1]:
+                path = target / file_name
+                self._fetch(number, "exr" if kind == "exr" else "png", path, overwrite)
+                paths.append(path)
+                if on_file:
+                    on_file(number, path)
+        return paths
+
+    def _fetch(self, number: int, kind: Literal["exr", "png"], path: Path, overwrite: bool) -> None:
+        if path.exists() and not overwrite and self._session.call(_calls.same_frame(self.id, number, kind, path)):
+            return
+        failures = 0
+        while True:
+            try:
+                with whole_file(path) as file, self._session.stream(_calls.frame(self.id, number, kind)) as response:
+                    for block in response.iter_bytes(1 << 20):
+                        file.write(block)
+                    file.finish(response)
+            except SheafError as error:
+                failures += 1
+                pause = self._session.retry.pause(failures, error)
+                if pause is None:
+                    raise
+                self._session.sleep(pause)
+            else:
+                return
+
+    def _listen(self, watch: Watch) -> Generator[Event, None, None]:
+        with self._session.stream(_calls.listen(self.id, watch.last)) as response:
+            if not response.headers.get("content-type", "").startswith("text/event-stream"):
+                watch.use_polls()
+                return
+            parser = SseParser()
+            for block in response.iter_bytes():
+                yield from parser.feed(block)
+                if watch.should_leave_stream(self._session.now()):
+                    return
+
+    def _poll(self, watch: Watch, step: Poll) -> Generator[Event, None, None]:
+        page = self._session.once(_calls.poll(self.id, watch.last, step.seconds))
+        yield from page.events
+        watch.skip_to(page.last)
+
+    def _numbers(self, numbers: Iterable[int] | None) -> list[int]:
+        return self.refresh().info.rendered if numbers is None else list(numbers)
+
+    def _unless_bad(self) -> Job:
+        if self.state == "failed":
+            error = self.info.error or {}
+            raise JobFailed(self.id, str(error.get("code", "unknown")), str(error.get("message", "no reason given")))
+        if self.state == "cancelled":
+            raise JobCancelled(self.id)
+        if self.state != "done":
+            raise ProtocolError(f"job {self.id}: its events ended, but it is {self.state}")
+        return self
+
+
+def _no_report(_: Progress) -> None:
+    pass

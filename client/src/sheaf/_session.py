@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Blocking I/O: sends the calls that `_calls` describes. An asynchronous twin replaces this file, not those."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+import httpx
+
+from ._errors import SheafError
+from ._http import Call, Part, RetryPolicy, api_error, translated
+from ._version import __version__
+
+T = TypeVar("T")
+
+
+class Session:
+    """Connections to one service, with its token, its time limits and its patience."""
+
+    def __init__(
+        self,
+        url: str,
+        token: str | None,
+        timeout: float | httpx.Timeout,
+        transport: httpx.BaseTransport | None,
+        retry: RetryPolicy,
+    ) -> None:
+        headers = {"user-agent": f"sheaf-client/{__version__}", "accept": "application/json"}
+        if token:
+            headers["authorization"] = f"Bearer {token}"
+        self.retry = retry
+        self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout, transport=transport)
+
+    def close(self) -> None:
+        """Closes all connections."""
+        self._http.close()
+
+    def sleep(self, seconds: float) -> None:
+        """The only place that sleeps."""
+        time.sleep(seconds)
+
+    def now(self) -> float:
+        """The clock of deadlines, seconds."""
+        return time.monotonic()
+
+    def call(self, call: Call[T]) -> T:
+        """Sends and reads the answer, again where the policy says so."""
+        failures = 0
+        while True:
+            try:
+                return self.once(call)
+            except SheafError as error:
+                failures += 1
+                pause = self.retry.pause(failures, error)
+                if pause is None:
+                    raise
+            self.sleep(pause)
+
+    @contextlib.contextmanager
+    def stream(self, call: Call[Any]) -> Iterator[httpx.Response]:
+        """The answer with its body yet to be read; failures while reading it are translated too."""
+        request = self._request(call)
+        with translated(f"{call.method} {request.url}"):
+            response = self._http.send(request, stream=True)
+            try:
+                if not response.is_success:
+                    response.read()
+                    raise api_error(response)
+                yield response
+            finally:
+                response.close()
+
+    def once(self, call: Call[T]) -> T:
+        """Sends and reads the answer, with one try."""
+        with contextlib.ExitStack() as files:
+            request = self._request(call, files)
+            with translated(f"{call.method} {request.url}"):
+                response = self._http.send(request)
+        if not response.is_success:
+            raise api_error(response)
+        return call.parse(response)
+
+    def _request(self, call: Call[Any], files: contextlib.ExitStack | None = None) -> httpx.Request:
+        multipart = [_opened(part, files) for part in call.parts] if files is not None else []
+        request = self._http.build_request(
+            call.method, call.path, params=call.params, headers=call.headers, files=multipart or None
+        )
+        if call.read_timeout is not None:
+            request.extensions["timeout"]["read"] = call.read_timeout
+        return request
+
+
+def _opened(part: Part, files: contextlib.ExitStack) -> tuple[str, tuple[str | None, Any, str]]:
+    content = part.open()
+    if hasattr(content, "close"):
+        files.callback(content.close)
+    return part.field, (part.filename, content, part.content_type)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""`sheaf-client render`: submit, watch, download."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+from .._errors import FrameError, JobError
+from .._exr import read_exr
+from .._files import write_whole
+from .._frames import frame_list, parse_frames
+from .._job import Job
+from .._names import FrameNames, default_pattern
+from ._connect import add_output, add_server, checked_name, connect
+from ._exit import UsageError
+from ._report import Report
+
+_NUMBERS = {"fps": str, "spp": str, "depth": int, "cutoff": float, "memory": int}
+_TEXTS = ("animation", "camera_node", "size", "aov", "device")
+_CHOICES = {
+    "strategy": "auto hybrid crsh rsh frustum classify bvh brute rayquery reference",
+    "sort": "auto on off",
+    "primary": "raster trace",
+    "compression": "none rle zips zip piz dwaa",
+}
+
+
+def add(commands: Any) -> None:
+    """Adds the command."""
+    parser = commands.add_parser("render", help="submit a scene, watch it, download its frames")
+    parser.add_argument("scene", metavar="SCENE", help=".glb, .gltf (with the files beside it) or .zip")
+    add_output(parser)
+    parser.add_argument("--resume", action="store_true", help="leave frames alone that are whole in DIR already")
+    parser.add_argument("--dump", metavar="DIR", help=argparse.SUPPRESS)
+    parser.add_argument("--idempotency-key", metavar="KEY", help="the same key and job again is the same job")
+    parser.add_argument(
+        "--cancel-on-interrupt", action="store_true", help="Ctrl-C cancels the job; else it goes on without us"
+    )
+    add_server(parser)
+    settings = parser.add_argument_group("settings, as of `sheaf render`; what is not given is the service's default")
+    settings.add_argument("--camera", metavar="PATH.json", help="camera path")
+    settings.add_argument("--frames", help="A-B[:STEP], N,M,...")
+    for name, kind in _NUMBERS.items():
+        settings.add_argument(f"--{name}", type=kind)
+    for name in _TEXTS:
+        settings.add_argument(f"--{name.replace('_', '-')}")
+    for name, choices in _CHOICES.items():
+        settings.add_argument(f"--{name}", choices=choices.split())
+    settings.add_argument("--opaque", action="store_true", default=None)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace, report: Report) -> None:
+    """Renders."""
+    if arguments.dump:
+        raise UsageError("--dump: a service does not hand out dumps; use `sheaf render` for it")
+    if arguments.camera and arguments.camera_node:
+        raise UsageError("--camera and --camera-node exclude each other")
+    arguments.name = checked_name(arguments.name or default_pattern(arguments.scene))
+    frames = missing_frames(arguments) if arguments.resume and arguments.frames else arguments.frames
+    if frames == "":
+        report.finish("all frames are there already")
+        return
+    with connect(arguments) as client:
+        settings = {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque")}
+        settings |= {"frames": frames, "preview": arguments.preview or None}
+        job = client.submit(arguments.scene, arguments.camera, idempotency_key=arguments.idempotency_key, **settings)
+        report.submitted(job.id)
+        fetch(job, arguments, report, wait=True, overwrite=not arguments.resume)
+
+
+def missing_frames(arguments: argparse.Namespace) -> str:
+    """The frames of `--frames` that are not whole in the folder."""
+    names = FrameNames(arguments.name)
+    numbers = parse_frames(arguments.frames)
+    missing = [number for number in numbers if not _is_whole(Path(arguments.out, names.frame(number)))]
+    return frame_list(missing) if missing else ""
+
+
+def _is_whole(path: Path) -> bool:
+    try:
+        read_exr(path)
+    except (FrameError, OSError):
+        return False
+    return True
+
+
+def fetch(job: Job, arguments: argparse.Namespace, report: Report, *, wait: bool, overwrite: bool) -> None:
+    """Waits where asked to, and downloads; what is whole is fetched even where the job failed."""
+    failure: JobError | None = None
+    if wait:
+        with detaching(job, arguments, report):
+            try:
+                job.wait(progress=report.progress)
+            except JobError as error:
+                failure = error
+    paths = job.download(arguments.out, arguments.preview, overwrite, name=arguments.name, on_file=report.file)
+    if failure:
+        raise failure
+    if arguments.stats:
+        write_whole(Path(arguments.stats), json.dumps(job.stats(), indent=1) + "\n")
+    report.finish(f"{len(paths)} files in {arguments.out}")
+
+
+@contextlib.contextmanager
+def detaching(job: Job, arguments: argparse.Namespace, report: Report) -> Iterator[None]:
+    """On Ctrl-C or SIGTERM cancels the job where asked to, else leaves it and says how to come back."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if getattr(arguments, "cancel_on_interrupt", False):
+            job.cancel()
+            report.always(f"cancelled job {job.id}")
+        else:
+            report.always(
+                f"job {job.id} goes on. Come back: sheaf-client download {job.id} --wait --out {quote(arguments.out)} "
+                f"--name {quote(arguments.name)}; stop it: sheaf-client cancel {job.id}"
+            )
+        raise
