@@ -40,11 +40,7 @@ class Builder {
   }
 
   BinaryHierarchy build() {
-    Range all{0, static_cast<std::uint32_t>(primitives_.size()), {}, {}};
-    for (const Primitive& p : primitives_) {
-      all.bounds.add(p.bounds);
-      all.middles.add(p.middle());
-    }
+    const Range all = whole(0, static_cast<std::uint32_t>(primitives_.size()));
     Pool top{0, 0};
     (void)take(top, 1);
     cut(all, 0, 0, top, true);
@@ -103,13 +99,19 @@ class Builder {
   bool split(const Range& range, std::uint32_t depth, Range& left, Range& right) {
     const bool may_be_leaf = range.count <= options_.leaf_size;
     const Binning binning(range);
-    const Split best = binning.useless() ? Split{} : best_split(range, binning);
+    const Split best = best_split(range, binning);
     if (may_be_leaf) {
       const float area = range.bounds.half_area();
       const float apart = options_.traversal_cost * area + options_.intersection_cost * best.cost;
       if (best.axis < 0 || !(apart < options_.intersection_cost * area * static_cast<float>(range.count))) return false;
     }
-    if (best.axis >= 0) partition(range, binning, best, left, right);
+    if (best.axis >= 0) {
+      if (range.count <= few) {
+        cut_sorted(range, best, left, right);
+      } else {
+        partition(range, binning, best, left, right);
+      }
+    }
     if (best.axis < 0 || !fits(left, depth + 1) || !fits(right, depth + 1)) {
       if (may_be_leaf) return false;
       halve(range, left, right);
@@ -123,7 +125,9 @@ class Builder {
   }
 
   Split best_split(const Range& range, const Binning& binning) {
-    Bins bins;
+    if (range.count <= few) return sweep_few(primitives(range));
+    if (binning.useless()) return {};
+    Bins bins(binning.bins);
     if (range.count >= shared_from && threads_ > 1 && tasks_open_) {
       fill_shared(bins, range, binning);
     } else {
@@ -137,7 +141,7 @@ class Builder {
   }
 
   void fill_shared(Bins& bins, const Range& range, const Binning& binning) {
-    std::vector<Bins> parts(threads_ - 1);
+    std::vector<Bins> parts(threads_ - 1, Bins(binning.bins));
     std::vector<std::jthread> helpers;
     const auto all = primitives(range);
     const std::size_t share = all.size() / threads_;
@@ -150,23 +154,35 @@ class Builder {
   }
 
   void partition(const Range& range, const Binning& binning, const Split& best, Range& left, Range& right) {
-    Bounds left_bounds, left_middles, right_bounds, right_middles;
+    left = right = {};
     std::uint32_t i = range.first, j = range.first + range.count;
     while (i < j) {
       Primitive& p = primitives_[i];
       const Vec4 middle = p.middle();
-      if (binning.bin(middle, best.axis) < best.bin) {
-        left_bounds.add(p.bounds);
-        left_middles.add(middle);
+      if (binning.bin(middle)[best.axis] < static_cast<std::int32_t>(best.bin)) {
+        left.bounds.add(p.bounds);
+        left.middles.add(middle);
         ++i;
       } else {
-        right_bounds.add(p.bounds);
-        right_middles.add(middle);
+        right.bounds.add(p.bounds);
+        right.middles.add(middle);
         std::swap(p, primitives_[--j]);
       }
     }
-    left = {range.first, i - range.first, left_bounds, left_middles};
-    right = {i, range.first + range.count - i, right_bounds, right_middles};
+    left.first = range.first;
+    left.count = i - range.first;
+    right.first = i;
+    right.count = range.count - left.count;
+  }
+
+  void cut_sorted(const Range& range, const Split& best, Range& left, Range& right) {
+    const auto all = primitives(range);
+    const Sorted place = sort_few(all, best.axis);
+    std::array<Primitive, few> copy;
+    std::copy(all.begin(), all.end(), copy.begin());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = copy[place[i]];
+    left = whole(range.first, best.left_count);
+    right = whole(range.first + best.left_count, range.count - best.left_count);
   }
 
   /// Where the heuristic finds no plane, or would go too deep: two halves along the axis on which the middles spread
@@ -188,7 +204,9 @@ class Builder {
   }
 
   Range whole(std::uint32_t first, std::uint32_t count) {
-    Range range{first, count, {}, {}};
+    Range range;
+    range.first = first;
+    range.count = count;
     for (const Primitive& p : primitives(range)) {
       range.bounds.add(p.bounds);
       range.middles.add(p.middle());

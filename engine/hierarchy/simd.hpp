@@ -6,20 +6,34 @@
 #include <cstdint>
 #include <limits>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 #include "hierarchy/object_hierarchy.hpp"
 
 namespace sheaf::simd {
 
 using Vec4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 inline Vec4 splat(float x) { return Vec4{x, x, x, x}; }
+// One instruction each on x86, where compilers do not reliably find it; the same result as `a < b ? a : b`, also for
+// NaN.
+#if defined(__SSE__)
+inline Vec4 min(Vec4 a, Vec4 b) { return _mm_min_ps(a, b); }
+inline Vec4 max(Vec4 a, Vec4 b) { return _mm_max_ps(a, b); }
+#else
 inline Vec4 min(Vec4 a, Vec4 b) { return a < b ? a : b; }
 inline Vec4 max(Vec4 a, Vec4 b) { return a > b ? a : b; }
+#endif
 
-struct Bounds {  // x y z; the fourth lane is anything
-  Vec4 lo = splat(std::numeric_limits<float>::infinity());
-  Vec4 hi = splat(-std::numeric_limits<float>::infinity());
+struct Bounds {  // x y z; the fourth lane is anything. Not initialised by itself: tables of it are filled as needed
+  Vec4 lo, hi;
 
+  static Bounds nothing() {
+    return {splat(std::numeric_limits<float>::infinity()), splat(-std::numeric_limits<float>::infinity())};
+  }
   void add(Vec4 point) {
     lo = min(lo, point);
     hi = max(hi, point);
