@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Nodes tied to meshes: skins, rest weights, instances.
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "scene/gltf_nodes.hpp"
+
+namespace sheaf {
+namespace {
+
+Skin read_skin(const GltfFile& file, const Accessors& accessors, std::size_t index) {
+  const tinygltf::Skin& source = file.model.skins[index];
+  const std::string place = at("skins", index);
+  Skin skin;
+  skin.joints.assign(source.joints.begin(), source.joints.end());
+  if (skin.joints.empty()) file.fail(place + ".joints", "is empty");
+  if (skin.joints.size() > 65536) file.over_limit(place + ".joints", "has more than 65536 joints");
+  skin.inverse_bind.assign(skin.joints.size(), glm::dmat4(1));
+  if (source.inverseBindMatrices < 0) return skin;
+  const std::vector<float> values =
+      accessors.floats(source.inverseBindMatrices, 16, Components::floats, "inverse bind matrices");
+  if (values.size() / 16 < skin.joints.size()) {
+    file.fail(place, "has " + std::to_string(skin.joints.size()) + " joints and " + std::to_string(values.size() / 16) +
+                         " inverse bind matrices");
+  }
+  for (std::size_t j = 0; j < skin.joints.size(); ++j)
+    skin.inverse_bind[j] = glm::dmat4(glm::make_mat4(values.data() + 16 * j));
+  return skin;
+}
+
+struct Instances {
+  std::vector<float> translation, rotation, scale;
+  std::size_t count = 0;
+};
+
+glm::dmat4 instance_matrix(const Instances& in, std::size_t i) {
+  glm::dmat4 m(1);
+  if (!in.translation.empty()) m = glm::translate(m, glm::dvec3(glm::make_vec3(&in.translation[3 * i])));
+  if (!in.rotation.empty()) {
+    const float* r = &in.rotation[4 * i];
+    const glm::dquat q(r[3], r[0], r[1], r[2]);
+    const double length = glm::length(q);
+    if (length > 0) m *= glm::mat4_cast(q / length);
+  }
+  if (!in.scale.empty()) m = glm::scale(m, glm::dvec3(glm::make_vec3(&in.scale[3 * i])));
+  return m;
+}
+
+std::vector<glm::dmat4> read_instances(const GltfFile& file, const Accessors& accessors,
+                                       const nlohmann::json& attributes, const std::string& place) {
+  Instances in;
+  const auto read = [&](const char* name, int width, Components allowed) -> std::vector<float> {
+    const nlohmann::json* accessor = member(attributes, name);
+    if (!accessor) return {};
+    const int index = accessor->get<int>();
+    if (in.count != 0 && accessors.count(index) != in.count) file.fail(place, "its attributes differ in count");
+    in.count = accessors.count(index);
+    if (in.count > file.limits.nodes)
+      file.over_limit(place, "more than " + std::to_string(file.limits.nodes) + " instances");
+    return accessors.floats(index, width, allowed, std::string("instance ") + name);
+  };
+  in.translation = read("TRANSLATION", 3, Components::floats);
+  in.rotation = read("ROTATION", 4, Components::floats_normalized);
+  in.scale = read("SCALE", 3, Components::floats);
+  std::vector<glm::dmat4> matrices(in.count);
+  for (std::size_t i = 0; i < in.count; ++i) matrices[i] = instance_matrix(in, i);
+  return matrices;
+}
+
+void bind_skin(GltfFile& file, const MeshEntry& mesh, const Scene& scene, std::size_t index, Node& node) {
+  const int skin = file.model.nodes[index].skin;
+  if (skin < 0 || mesh.count == 0) return;
+  const std::string place = at("nodes", index);
+  if (mesh.joints == 0) {
+    file.warn(place + ".skin", "is ignored: the node's mesh has no JOINTS_0");
+    return;
+  }
+  const std::size_t joints = scene.skins[static_cast<std::size_t>(skin)].joints.size();
+  if (mesh.joints > joints) {
+    file.fail(place, "its mesh refers to joint " + std::to_string(mesh.joints - 1) + ", " +
+                         at("skins", static_cast<std::size_t>(skin)) + " has " + std::to_string(joints));
+  }
+  node.skin = static_cast<std::uint32_t>(skin);
+}
+
+}  // namespace
+
+void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& scene) {
+  const Accessors accessors(file);
+  for (std::size_t i = 0; i < file.model.skins.size(); ++i) scene.skins.push_back(read_skin(file, accessors, i));
+  std::uint64_t instances = 0;
+  for (const std::uint32_t i : scene.order) {
+    const tinygltf::Node& source = file.model.nodes[i];
+    if (source.mesh < 0) continue;
+    Node& node = scene.nodes[i];
+    const MeshEntry& mesh = meshes[static_cast<std::size_t>(source.mesh)];
+    node.first_mesh = mesh.first;
+    node.mesh_count = mesh.count;
+    node.morph_weights = source.weights.empty() ? mesh.weights : source.weights;
+    if (node.morph_weights.size() != mesh.targets) {
+      file.fail(at("nodes", i) + ".weights", "has " + std::to_string(node.morph_weights.size()) + " weights for " +
+                                                 std::to_string(mesh.targets) + " morph targets");
+    }
+    bind_skin(file, mesh, scene, i, node);
+    if (const auto* e = extension(file.json["nodes"][i], "EXT_mesh_gpu_instancing")) {
+      node.instances =
+          read_instances(file, accessors, e->at("attributes"), at("nodes", i) + ".EXT_mesh_gpu_instancing");
+      instances += node.instances.size();
+      if (instances > file.limits.nodes)
+        file.over_limit(at("nodes", i), "more than " + std::to_string(file.limits.nodes) + " instances");
+    }
+  }
+}
+
+}  // namespace sheaf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/gltf_nodes.hpp"
+
+namespace sheaf {
+namespace {
+
+using nlohmann::json;
+
+Camera perspective_camera(const GltfFile& file, const json& object, const std::string& place) {
+  Camera camera;
+  camera.yfov = object.at("yfov").get<double>();
+  camera.aspect = number_or(object, "aspectRatio", 0);
+  camera.near = object.at("znear").get<double>();
+  camera.far = number_or(object, "zfar", std::numeric_limits<double>::infinity());
+  if (!(camera.yfov > 0 && camera.yfov < std::numbers::pi)) file.fail(place + ".yfov", "must be between 0 and pi");
+  if (!(camera.near >= 0 && camera.far > camera.near)) file.fail(place, "zfar must be larger than znear");
+  return camera;
+}
+
+Camera orthographic_camera(const GltfFile& file, const json& object, const std::string& place) {
+  Camera camera;
+  camera.orthographic = true;
+  // Some exporters write negative magnifications; their size is what counts.
+  camera.xmag = std::abs(object.at("xmag").get<double>());
+  camera.ymag = std::abs(object.at("ymag").get<double>());
+  camera.near = object.at("znear").get<double>();
+  camera.far = object.at("zfar").get<double>();
+  if (camera.xmag == 0 || camera.ymag == 0) file.fail(place, "xmag and ymag must not be 0");
+  if (!(camera.far > camera.near)) file.fail(place, "zfar must be larger than znear");
+  return camera;
+}
+
+void read_spot(GltfFile& file, const json& object, const std::string& place, Light& light) {
+  const json* spot = member(object, "spot");
+  if (!spot) file.fail(place + ".spot", "is missing");
+  double inner = number_or(*spot, "innerConeAngle", 0);
+  double outer = number_or(*spot, "outerConeAngle", std::numbers::pi / 4);
+  if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6))
+    file.fail(place + ".spot.outerConeAngle", "must be between 0 and pi / 2");
+  if (inner < 0 || inner >= outer) {
+    // An inner cone as wide as the outer one is a hard edge: the falloff between them must keep a width.
+    const double inside = std::clamp(inner, 0.0, outer * (1 - 1e-4));
+    if (inner != outer) file.warn(place + ".spot.innerConeAngle", "is not between 0 and outerConeAngle");
+    inner = inside;
+  }
+  light.inner_cone = static_cast<float>(inner);
+  light.outer_cone = static_cast<float>(outer);
+}
+
+Light read_light(GltfFile& file, const json& object, const std::string& place) {
+  Light light;
+  light.name = object.value("name", "");
+  const std::string type = object.at("type").get<std::string>();
+  if (type == "directional") {
+    light.kind = LightKind::directional;
+  } else if (type == "spot") {
+    light.kind = LightKind::spot;
+    read_spot(file, object, place, light);
+  } else if (type != "point") {
+    file.fail(place + ".type", "\"" + type.substr(0, 40) + "\" is not directional, point or spot");
+  }
+  if (const json* color = member(object, "color")) {
+    for (int c = 0; c < 3; ++c) light.color[c] = (*color)[static_cast<std::size_t>(c)].get<float>();
+  }
+  light.intensity = static_cast<float>(number_or(object, "intensity", 1));
+  if (object.contains("range")) {
+    light.range = static_cast<float>(number_or(object, "range", 0));
+    if (!(light.range > 0)) file.fail(place + ".range", "must be larger than 0");
+  }
+  return light;
+}
+
+}  // namespace
+
+void load_cameras(GltfFile& file, Scene& scene) {
+  for (std::size_t i = 0; i < file.model.cameras.size(); ++i) {
+    const json& object = file.json["cameras"][i];
+    const std::string type = object.at("type").get<std::string>(), place = at("cameras", i) + "." + type;
+    const json* lens = member(object, type.c_str());
+    if (type != "perspective" && type != "orthographic")
+      file.fail(at("cameras", i) + ".type", "is not perspective or orthographic");
+    if (!lens) file.fail(place, "is missing");
+    scene.cameras.push_back(type == "perspective" ? perspective_camera(file, *lens, place)
+                                                  : orthographic_camera(file, *lens, place));
+    scene.cameras.back().name = object.value("name", "");
+  }
+}
+
+void load_lights(GltfFile& file, Scene& scene) {
+  const json* list = extension(file.json, "KHR_lights_punctual");
+  list = list ? member(*list, "lights") : nullptr;
+  if (!list) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    scene.lights.push_back(read_light(file, (*list)[i], "extensions.KHR_lights_punctual." + at("lights", i)));
+  }
+}
+
+}  // namespace sheaf

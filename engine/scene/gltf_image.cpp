@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "scene/gltf_image.hpp"
+
+#include <stb/stb_image.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <thread>
+
+namespace sheaf {
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+// The kind of file, by its first bytes: mimeType is often wrong.
+const char* format_of(const Bytes& bytes) {
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 12));
+  if (head.starts_with("\x89PNG")) return "PNG";
+  if (head.starts_with("\xff\xd8\xff")) return "JPEG";
+  if (head.starts_with("\xabKTX 20")) return "KTX2";
+  if (head.starts_with("\xabKTX")) return "KTX";
+  if (head.starts_with("DDS ")) return "DDS";
+  if (head.starts_with("RIFF") && head.substr(8) == "WEBP") return "WebP";
+  if (head.starts_with("GIF8")) return "GIF";
+  if (head.starts_with("BM")) return "BMP";
+  return "unknown";
+}
+
+// Checks the header, so that what decoding will allocate is known before it starts.
+std::uint64_t decoded_size(const GltfFile& file, std::uint32_t index) {
+  const Bytes& bytes = file.model.images[index].image;
+  const std::string place = at("images", index);
+  if (bytes.empty()) file.fail(place, "could not be read");
+  const std::string format = format_of(bytes);
+  if (format != "PNG" && format != "JPEG")
+    file.fail(place, format + " images are not supported, only PNG and JPEG are");
+  int width = 0, height = 0, channels = 0;
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
+      !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) || width <= 0 ||
+      height <= 0) {
+    file.fail(place, "is not a valid " + format + " file");
+  }
+  const auto most = static_cast<std::int64_t>(file.limits.image_side);
+  if (width > most || height > most) {
+    file.over_limit(place, std::to_string(width) + " x " + std::to_string(height) + " pixels, a side may have " +
+                               std::to_string(most));
+  }
+  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
+}
+
+Image decode(const GltfFile& file, std::uint32_t index) {
+  const tinygltf::Image& source = file.model.images[index];
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(source.image.data(), static_cast<int>(source.image.size()), &width, &height, &channels, 4),
+      &stbi_image_free);
+  if (!pixels) file.fail(at("images", index), std::string("cannot be decoded: ") + stbi_failure_reason());
+  Image image;
+  image.name = source.name.empty() ? source.uri : source.name;
+  image.width = static_cast<std::uint32_t>(width);
+  image.height = static_cast<std::uint32_t>(height);
+  image.rgba.assign(pixels.get(), pixels.get() + std::size_t{image.width} * image.height * 4);
+  return image;
+}
+
+}  // namespace
+
+std::vector<Image> decode_images(const GltfFile& file, const std::vector<std::uint32_t>& images) {
+  std::uint64_t total = 0;
+  for (const std::uint32_t index : images) {
+    total += decoded_size(file, index);
+    if (total > file.limits.texture_bytes) {
+      file.over_limit(at("images", index),
+                      "the decoded images exceed " + std::to_string(file.limits.texture_bytes) + " bytes");
+    }
+  }
+
+  std::vector<Image> decoded(images.size());
+  std::vector<std::exception_ptr> errors(
+      images.size());  // the first in the file's order is thrown, whoever met it first
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < images.size(); i = next++) {
+      try {
+        decoded[i] = decode(file, images[i]);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    }
+  };
+  {
+    const std::size_t count = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 8);
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 1; t < std::min(count, images.size()); ++t) threads.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return decoded;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "scene/gltf_material.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "scene/gltf_image.hpp"
+
+namespace sheaf {
+namespace {
+
+using nlohmann::json;
+
+// A factor outside its range is brought into it with a warning: renderers do that silently, authors want to know.
+float clamped(GltfFile& file, const std::string& place, double value, double lo, double hi) {
+  const double inside = std::clamp(value, lo, hi);
+  if (inside != value) {
+    file.warn(place, std::to_string(value) + " is outside its range, " + std::to_string(inside) + " is used");
+  }
+  return static_cast<float>(inside);
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(GltfFile& file, Scene& scene) : file_(file), scene_(scene) {}
+
+  Material read(std::size_t index) {
+    const tinygltf::Material& source = file_.model.materials[index];
+    const json& object = file_.json["materials"][index];
+    place_ = at("materials", index);
+    Material out;
+    out.name = source.name;
+    read_metallic_roughness(source, object, out);
+    read_surface(source, object, out);
+    read_extensions(object, out);
+    return out;
+  }
+
+  // Only images that a material reads are decoded; Scene::images follows the order of their first use.
+  void decode_used_images() { scene_.images = decode_images(file_, image_order_); }
+
+ private:
+  void read_metallic_roughness(const tinygltf::Material& source, const json& object, Material& out) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const std::string place = place_ + ".pbrMetallicRoughness";
+    for (int c = 0; c < 4; ++c) {
+      out.base_color[c] =
+          clamped(file_, place + ".baseColorFactor", pbr.baseColorFactor[static_cast<std::size_t>(c)], 0, 1);
+    }
+    out.metallic = clamped(file_, place + ".metallicFactor", pbr.metallicFactor, 0, 1);
+    out.roughness = clamped(file_, place + ".roughnessFactor", pbr.roughnessFactor, 0, 1);
+    if (const json* at_pbr = member(object, "pbrMetallicRoughness")) {
+      out.base_color_texture = texture_use(*at_pbr, "baseColorTexture");
+      out.metallic_roughness_texture = texture_use(*at_pbr, "metallicRoughnessTexture");
+    }
+  }
+
+  void read_surface(const tinygltf::Material& source, const json& object, Material& out) {
+    out.normal_texture = texture_use(object, "normalTexture");
+    out.normal_texture.strength = static_cast<float>(source.normalTexture.scale);
+    out.occlusion_texture = texture_use(object, "occlusionTexture");
+    out.occlusion_texture.strength =
+        clamped(file_, place_ + ".occlusionTexture.strength", source.occlusionTexture.strength, 0, 1);
+    out.emissive_texture = texture_use(object, "emissiveTexture");
+    for (int c = 0; c < 3; ++c) {
+      out.emissive[c] =
+          clamped(file_, place_ + ".emissiveFactor", source.emissiveFactor[static_cast<std::size_t>(c)], 0, 1);
+    }
+    if (source.alphaMode == "MASK") {
+      out.alpha_mode = AlphaMode::mask;
+    } else if (source.alphaMode == "BLEND") {
+      out.alpha_mode = AlphaMode::blend;
+    } else if (source.alphaMode != "OPAQUE") {
+      file_.fail(place_ + ".alphaMode", "\"" + source.alphaMode.substr(0, 40) + "\" is not OPAQUE, MASK or BLEND");
+    }
+    out.alpha_cutoff = clamped(file_, place_ + ".alphaCutoff", source.alphaCutoff, 0, any_);
+    out.double_sided = source.doubleSided;
+  }
+
+  void read_extensions(const json& object, Material& out) {
+    out.unlit = extension(object, "KHR_materials_unlit") != nullptr;
+    if (const json* e = extension(object, "KHR_materials_emissive_strength")) {
+      const float strength =
+          clamped(file_, place_ + ".emissiveStrength", number_or(*e, "emissiveStrength", 1), 0, any_);
+      out.emissive *= strength;
+      if (!std::isfinite(out.emissive.x + out.emissive.y + out.emissive.z))
+        file_.fail(place_ + ".emissiveStrength", "is too large");
+    }
+    if (const json* e = extension(object, "KHR_materials_transmission")) {
+      out.transmission = clamped(file_, place_ + ".transmissionFactor", number_or(*e, "transmissionFactor", 0), 0, 1);
+      out.transmission_texture = texture_use(*e, "transmissionTexture");
+    }
+    if (const json* e = extension(object, "KHR_materials_ior")) read_ior(*e, out);
+    if (const json* e = extension(object, "KHR_materials_volume")) read_volume(*e, out);
+  }
+
+  void read_ior(const json& e, Material& out) {
+    const double ior = number_or(e, "ior", 1.5);
+    // The extension gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 % of
+    // that (F0 = (999 / 1001)^2) and keeps every formula finite.
+    constexpr double mirror_like = 1000;
+    out.ior = ior == 0 ? static_cast<float>(mirror_like) : clamped(file_, place_ + ".ior", ior, 1, mirror_like);
+  }
+
+  void read_volume(const json& e, Material& out) {
+    out.thickness = clamped(file_, place_ + ".thicknessFactor", number_or(e, "thicknessFactor", 0), 0, any_);
+    if (e.contains("thicknessTexture")) {
+      file_.warn(place_ + ".thicknessTexture", "is ignored: absorption follows the path through the closed mesh");
+    }
+    if (e.contains("attenuationDistance")) {
+      const double distance = number_or(e, "attenuationDistance", 0);
+      if (!(distance > 0)) file_.fail(place_ + ".attenuationDistance", "must be larger than 0");
+      out.attenuation_distance = static_cast<float>(distance);
+    }
+    if (const json* color = member(e, "attenuationColor")) {
+      for (int c = 0; c < 3; ++c) {
+        out.attenuation_color[c] =
+            clamped(file_, place_ + ".attenuationColor", (*color)[static_cast<std::size_t>(c)].get<double>(), 0, 1);
+      }
+    }
+  }
+
+  TextureUse texture_use(const json& owner, const char* slot) {
+    TextureUse use;
+    const json* info = member(owner, slot);
+    if (!info) return use;
+    use.texture = texture(info->at("index").get<std::uint32_t>());
+    use.uv_set = static_cast<std::uint32_t>(number_or(*info, "texCoord", 0));
+    if (const json* e = extension(*info, "KHR_texture_transform")) read_transform(*e, use);
+    if (use.present() && use.uv_set > 1) {
+      file_.warn(place_ + "." + slot, "reads TEXCOORD_" + std::to_string(use.uv_set) +
+                                          ", only sets 0 and 1 are supported: the texture is ignored");
+      return {};
+    }
+    return use;
+  }
+
+  static void read_transform(const json& e, TextureUse& use) {
+    const auto pair = [&](const char* key, glm::vec2& out) {
+      if (const json* v = member(e, key)) out = glm::vec2((*v)[0].get<float>(), (*v)[1].get<float>());
+    };
+    pair("offset", use.offset);
+    pair("scale", use.scale);
+    use.rotation = static_cast<float>(number_or(e, "rotation", 0));
+    use.uv_set = static_cast<std::uint32_t>(number_or(e, "texCoord", use.uv_set));
+  }
+
+  // Scene::textures holds those that are used, in the order of their first use.
+  std::uint32_t texture(std::uint32_t index) {
+    const auto [known, is_new] = textures_.try_emplace(index, none);
+    if (!is_new) return known->second;
+    const tinygltf::Texture& source = file_.model.textures[index];
+    if (source.source < 0) {
+      file_.warn(at("textures", index), "has no image that can be read and is ignored");
+      return none;
+    }
+    Texture out;
+    const auto [image, fresh] =
+        images_.try_emplace(static_cast<std::uint32_t>(source.source), static_cast<std::uint32_t>(image_order_.size()));
+    if (fresh) image_order_.push_back(static_cast<std::uint32_t>(source.source));
+    out.image = image->second;
+    if (source.sampler >= 0) read_sampler(static_cast<std::size_t>(source.sampler), out);
+    known->second = static_cast<std::uint32_t>(scene_.textures.size());
+    scene_.textures.push_back(out);
+    return known->second;
+  }
+
+  void read_sampler(std::size_t index, Texture& out) const {
+    const tinygltf::Sampler& sampler = file_.model.samplers[index];
+    const auto wrap = [&](int mode, const char* key) {
+      if (mode == TINYGLTF_TEXTURE_WRAP_REPEAT) return Wrap::repeat;
+      if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::mirrored_repeat;
+      if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp_to_edge;
+      file_.fail(at("samplers", index) + "." + key, std::to_string(mode) + " is not a wrap mode");
+    };
+    out.wrap_s = wrap(sampler.wrapS, "wrapS");
+    out.wrap_t = wrap(sampler.wrapT, "wrapT");
+    out.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    out.mipmapped =
+        sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
+  }
+
+  static constexpr double any_ = std::numeric_limits<float>::max();
+  GltfFile& file_;
+  Scene& scene_;
+  std::string place_;
+  std::map<std::uint32_t, std::uint32_t> textures_, images_;  // index in the file to index in the scene
+  std::vector<std::uint32_t> image_order_;
+};
+
+}  // namespace
+
+void load_materials(GltfFile& file, Scene& scene) {
+  MaterialReader reader(file, scene);
+  for (std::size_t i = 0; i < file.model.materials.size(); ++i) scene.materials.push_back(reader.read(i));
+  scene.materials.emplace_back();
+  scene.materials.back().name = "default";
+  reader.decode_used_images();
+}
+
+}  // namespace sheaf

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene/gltf_file.hpp"
+#include "scene/scene.hpp"
+
+namespace sheaf {
+
+/// Materials (the default one after the file's own), and the textures and images that they use: those alone are
+/// decoded.
+void load_materials(GltfFile& file, Scene& scene);
+
+}  // namespace sheaf
