@@ -140,15 +140,15 @@ Imath::M44f to_row_vectors(const glm::dmat4& matrix) {
 }
 
 // Non-drop SMPTE time of the frame number at the rounded rate; before 0 and past 24 hours it wraps around, as tape
-// does. The frame field has no more than two bits of tens: above 40 a second frames are counted in pairs, and the field
-// flag says which of the two (SMPTE ST 12-1); above 60 there is no time code.
+// does. The frame field ends at 29: above 30 a second frames are counted in pairs, and the field flag says which of the
+// two (SMPTE ST 12-1); above 60 there is no time code.
 void add_time_code(Imf::Header& header, std::int64_t frame, double fps) {
   const auto rate = std::max<std::int64_t>(1, std::llround(std::min(fps, 1e6)));
   if (rate > 60) return;
   const std::int64_t day = rate * 24 * 60 * 60;
   const std::int64_t wrapped = (frame % day + day) % day;
   const std::int64_t seconds = wrapped / rate, in_second = wrapped % rate;
-  const bool pairs = rate > 40;
+  const bool pairs = rate > 30;
   Imf::TimeCode code(static_cast<int>(seconds / 3600), static_cast<int>(seconds / 60 % 60),
                      static_cast<int>(seconds % 60), static_cast<int>(pairs ? in_second / 2 : in_second));
   code.setFieldPhase(pairs && in_second % 2 == 1);

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: MIT
+#include "output/exr_writer.hpp"
+
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "output_support.hpp"
+
+namespace sheaf {
+namespace {
+
+using test::contents;
+using test::error_of;
+using test::put;
+
+constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array lossless{Compression::none, Compression::rle, Compression::zips, Compression::zip,
+                              Compression::piz};
+
+std::vector<float> noise(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> values(count);
+  for (float& value : values) value = static_cast<float>(random()) / 4e9f * 20 - 10;
+  return values;
+}
+
+// Every layer, in a size that ends in the middle of every compression's chunk.
+FrameLayers full(std::uint32_t width = 37, std::uint32_t height = 53) {
+  const std::size_t pixels = std::size_t{width} * height;
+  FrameLayers layers{width,
+                     height,
+                     noise(pixels * 4, 1),
+                     noise(pixels, 2),
+                     noise(pixels * 3, 3),
+                     noise(pixels * 3, 4),
+                     noise(pixels * 3, 5),
+                     noise(pixels * 2, 6),
+                     {},
+                     {},
+                     noise(pixels, 7)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    layers.object_id.push_back(static_cast<std::uint32_t>(i * 2654435761u));
+    layers.material_id.push_back(static_cast<std::uint32_t>(~i));
+  }
+  layers.depth[5] = inf;
+  return layers;
+}
+
+FrameAttributes attributes() {
+  FrameAttributes result;
+  result.fps = 24;
+  result.frame = 12;
+  result.time_s = 0.5;
+  result.scene_sha256 = "abc123";
+  result.settings_json = R"({"size":[37,53]})";
+  result.strategy = "hybrid";
+  result.version = "0.1.0";
+  return result;
+}
+
+template <typename T>
+std::vector<T> channel(const std::string& path, const char* name, Imf::PixelType type) {
+  Imf::InputFile file(path.c_str(), 0);
+  const Imf::Channel* found = file.header().channels().findChannel(name);
+  EXPECT_TRUE(found != nullptr && found->type == type) << name;
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x + 1), height = static_cast<std::size_t>(window.max.y + 1);
+  std::vector<T> values(width * height);
+  Imf::FrameBuffer buffer;
+  buffer.insert(name, Imf::Slice(type, reinterpret_cast<char*>(values.data()), sizeof(T), sizeof(T) * width));
+  file.setFrameBuffer(buffer);
+  file.readPixels(0, static_cast<int>(height) - 1);
+  return values;
+}
+
+template <typename T>
+void expect_same(const std::string& path, std::vector<const char*> names, Imf::PixelType type,
+                 const std::vector<T>& interleaved) {
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::vector<T> read = channel<T>(path, names[c], type);
+    std::vector<T> wanted;
+    for (std::size_t i = c; i < interleaved.size(); i += names.size()) wanted.push_back(interleaved[i]);
+    EXPECT_TRUE(read == wanted) << names[c];
+  }
+}
+
+std::vector<half> halves(const std::vector<float>& values) { return {values.begin(), values.end()}; }
+
+class ExrWriterTest : public test::OutputTest {
+ protected:
+  template <typename Attribute>
+  [[nodiscard]] auto attribute(const char* name) const {
+    return Imf::InputFile(path("a.exr").c_str(), 0).header().typedAttribute<Attribute>(name).value();
+  }
+  [[nodiscard]] Imf::TimeCode time_code(std::int64_t frame, double fps) const {
+    FrameAttributes with = attributes();
+    with.frame = frame;
+    with.fps = fps;
+    write_exr(path("a.exr"), tiny(), with, Compression::zip);
+    return Imf::timeCode(Imf::InputFile(path("a.exr").c_str(), 0).header());
+  }
+  static FrameLayers tiny() {
+    FrameLayers layers;
+    layers.width = layers.height = 1;
+    layers.rgba = {0.5f, 0.25f, 0.125f, 1};
+    return layers;
+  }
+};
+
+TEST_F(ExrWriterTest, EveryLayerReadsBackExactly) {
+  const FrameLayers layers = full();
+  for (const Compression compression : lossless) {
+    SCOPED_TRACE(name_of(compression));
+    const std::string file = path("a.exr");
+    write_exr(file, layers, attributes(), compression);
+    expect_same(file, {"R", "G", "B", "A"}, Imf::HALF, halves(layers.rgba));
+    expect_same(file, {"Z"}, Imf::FLOAT, layers.depth);
+    expect_same(file, {"N.X", "N.Y", "N.Z"}, Imf::FLOAT, layers.normal);
+    expect_same(file, {"P.X", "P.Y", "P.Z"}, Imf::FLOAT, layers.position);
+    expect_same(file, {"albedo.R", "albedo.G", "albedo.B"}, Imf::HALF, halves(layers.albedo));
+    expect_same(file, {"UV.X", "UV.Y"}, Imf::FLOAT, layers.uv);
+    expect_same(file, {"id.object"}, Imf::UINT, layers.object_id);
+    expect_same(file, {"id.material"}, Imf::UINT, layers.material_id);
+    expect_same(file, {"tests"}, Imf::FLOAT, layers.tests);
+    EXPECT_TRUE(exr_is_whole(file, 37, 53));
+  }
+}
+
+TEST_F(ExrWriterTest, RowZeroIsAtTheTop) {
+  FrameLayers layers;
+  layers.width = 2;
+  layers.height = 3;
+  layers.depth = {1, 2, 3, 4, 5, 6};
+  write_exr(path("a.exr"), layers, attributes(), Compression::none);
+  EXPECT_EQ(Imf::InputFile(path("a.exr").c_str(), 0).header().lineOrder(), Imf::INCREASING_Y);
+  EXPECT_EQ(channel<float>(path("a.exr"), "Z", Imf::FLOAT), layers.depth);
+}
+
+TEST_F(ExrWriterTest, OnlyWhatWasGivenIsThere) {
+  write_exr(path("a.exr"), tiny(), attributes(), Compression::zip);
+  Imf::MultiPartInputFile file(path("a.exr").c_str(), 0);
+  EXPECT_EQ(file.parts(), 1);
+  std::vector<std::string> channels;
+  const auto& list = file.header(0).channels();
+  for (auto at = list.begin(); at != list.end(); ++at) channels.emplace_back(at.name());
+  EXPECT_EQ(channels, (std::vector<std::string>{"A", "B", "G", "R"}));
+  EXPECT_FALSE(file.header(0).hasTileDescription());
+  EXPECT_EQ(file.header(0).compression(), Imf::ZIP_COMPRESSION);
+  std::vector<std::string> attribute_names;
+  for (auto at = file.header(0).begin(); at != file.header(0).end(); ++at)
+    if (at.name() != std::string("type")) attribute_names.emplace_back(at.name());  // filled in by the reader
+  EXPECT_EQ(
+      attribute_names,
+      (std::vector<std::string>{
+          "channels", "chromaticities", "compression", "dataWindow", "displayWindow", "framesPerSecond", "lineOrder",
+          "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "sheaf:frame", "sheaf:sceneHash",
+          "sheaf:settings", "sheaf:strategy", "sheaf:time", "software", "timeCode", "worldToCamera", "worldToNDC"}));
+}
+
+TEST_F(ExrWriterTest, HalvesAreClampedAndNeverNan) {
+  FrameLayers layers = tiny();
+  layers.rgba = {1e9f, -1e9f, nan, inf};
+  layers.albedo = {-inf, 65519, 1e-9f};
+  write_exr(path("a.exr"), layers, attributes(), Compression::zip);
+  const auto value = [&](const char* name) {
+    return static_cast<float>(channel<half>(path("a.exr"), name, Imf::HALF)[0]);
+  };
+  EXPECT_EQ(value("R"), 65504);
+  EXPECT_EQ(value("G"), -65504);
+  EXPECT_EQ(value("B"), 0);
+  EXPECT_EQ(value("A"), 65504);
+  EXPECT_EQ(value("albedo.R"), -65504);
+  EXPECT_EQ(value("albedo.G"), 65504);
+  EXPECT_EQ(value("albedo.B"), 0);
+}
+
+TEST_F(ExrWriterTest, AttributesSayWhatTheFrameIs) {
+  write_exr(path("a.exr"), tiny(), attributes(), Compression::zip);
+  EXPECT_EQ(attribute<Imf::StringAttribute>("software"), "Sheaf 0.1.0");
+  EXPECT_EQ(attribute<Imf::StringAttribute>("sheaf:sceneHash"), "abc123");
+  EXPECT_EQ(attribute<Imf::StringAttribute>("sheaf:settings"), R"({"size":[37,53]})");
+  EXPECT_EQ(attribute<Imf::StringAttribute>("sheaf:strategy"), "hybrid");
+  EXPECT_EQ(attribute<Imf::IntAttribute>("sheaf:frame"), 12);
+  EXPECT_EQ(attribute<Imf::DoubleAttribute>("sheaf:time"), 0.5);
+  const Imf::Chromaticities rec709 = attribute<Imf::ChromaticitiesAttribute>("chromaticities");
+  EXPECT_EQ(rec709.red, Imath::V2f(0.64f, 0.33f));
+  EXPECT_EQ(rec709.green, Imath::V2f(0.30f, 0.60f));
+  EXPECT_EQ(rec709.blue, Imath::V2f(0.15f, 0.06f));
+  EXPECT_EQ(rec709.white, Imath::V2f(0.3127f, 0.3290f));
+}
+
+TEST_F(ExrWriterTest, MatricesFollowOpenExrsConventions) {
+  // A camera at (1, 2, 3) looking along -Z, 90 degrees, square.
+  FrameAttributes with = attributes();
+  with.world_to_camera = glm::translate(glm::dmat4(1), {-1, -2, -3});
+  glm::dmat4 to_ndc(0);  // x' = (x - z) / 2, y' = (-y - z) / 2, w' = -z: the middle of the image is (0.5, 0.5)
+  to_ndc[0][0] = 0.5;
+  to_ndc[1][1] = -0.5;
+  to_ndc[2] = {-0.5, -0.5, 0, -1};
+  with.world_to_ndc = to_ndc * with.world_to_camera;
+  write_exr(path("a.exr"), tiny(), with, Compression::zip);
+  const Imath::M44f to_camera = attribute<Imf::M44fAttribute>("worldToCamera");
+  EXPECT_EQ(Imath::V3f(1, 2, 3) * to_camera, Imath::V3f(0, 0, 0));
+  EXPECT_EQ(Imath::V3f(2, 4, -7) * to_camera, Imath::V3f(1, 2, 10)) << "right, up, and 10 ahead as +Z";
+  const Imath::M44f ndc = attribute<Imf::M44fAttribute>("worldToNDC");
+  const Imath::V3f centre = Imath::V3f(1, 2, -7) * ndc, corner = Imath::V3f(-9, 12, -7) * ndc;
+  EXPECT_EQ(Imath::V2f(centre.x, centre.y), Imath::V2f(0.5f, 0.5f));
+  EXPECT_EQ(Imath::V2f(corner.x, corner.y), Imath::V2f(0, 0)) << "left and up is the upper left corner";
+}
+
+TEST_F(ExrWriterTest, FramesPerSecondIsExact) {
+  const auto rate = [&](double fps) {
+    (void)time_code(1, fps);
+    return attribute<Imf::RationalAttribute>("framesPerSecond");
+  };
+  EXPECT_EQ(rate(24).n, 24);
+  EXPECT_EQ(rate(24).d, 1u);
+  EXPECT_EQ(rate(24000 / 1001.0).n, 24000);
+  EXPECT_EQ(rate(24000 / 1001.0).d, 1001u);
+  EXPECT_EQ(rate(12.5).n, 25);
+  EXPECT_EQ(rate(12.5).d, 2u);
+}
+
+TEST_F(ExrWriterTest, TimeCodes) {
+  const auto text = [](const Imf::TimeCode& code) {
+    return std::to_string(code.hours()) + ":" + std::to_string(code.minutes()) + ":" + std::to_string(code.seconds()) +
+           ":" + std::to_string(code.frame()) + (code.fieldPhase() ? "b" : "") + (code.dropFrame() ? "d" : "");
+  };
+  EXPECT_EQ(text(time_code(0, 24)), "0:0:0:0");
+  EXPECT_EQ(text(time_code(24 * 3661 + 23, 24)), "1:1:1:23");
+  EXPECT_EQ(text(time_code(24, 24000 / 1001.0)), "0:0:1:0") << "counts frames, drops none";
+  EXPECT_EQ(text(time_code(-1, 24)), "23:59:59:23");
+  EXPECT_EQ(text(time_code(24 * 86400, 24)), "0:0:0:0");
+  EXPECT_EQ(text(time_code(29, 30)), "0:0:0:29");
+  EXPECT_EQ(text(time_code(47, 48)), "0:0:0:23b");
+  EXPECT_EQ(text(time_code(59, 60)), "0:0:0:29b");
+  EXPECT_EQ(text(time_code(48, 60)), "0:0:0:24");
+  EXPECT_EQ(text(time_code(5, 0.25)), "0:0:5:0");
+  FrameAttributes fast = attributes();
+  fast.fps = 120;
+  write_exr(path("a.exr"), tiny(), fast, Compression::zip);
+  EXPECT_FALSE(Imf::hasTimeCode(Imf::InputFile(path("a.exr").c_str(), 0).header()));
+}
+
+TEST_F(ExrWriterTest, SameInputSameBytes) {
+  std::string first;
+  for (const Compression compression : lossless) {
+    write_exr(path("a.exr"), full(), attributes(), compression);
+    write_exr(path("b.exr"), full(), attributes(), compression);
+    EXPECT_EQ(contents(path("a.exr")), contents(path("b.exr")));
+  }
+  EXPECT_EQ(Imf::globalThreadCount(), 0);
+}
+
+TEST_F(ExrWriterTest, DwaaKeepsDataAndRefusesWhatItWouldHarm) {
+  FrameLayers layers = full();
+  const auto refusal = [&] {
+    return error_of(ErrorKind::usage, [&] { write_exr(path("a.exr"), layers, attributes(), Compression::dwaa); });
+  };
+  const std::string reason = "of --aov N with loss, as if it were luminance; use zip or piz";
+  EXPECT_EQ(refusal(), "--compression dwaa: would store N.Y " + reason);
+  layers.normal.clear();
+  EXPECT_NE(refusal().find("P.Y"), std::string::npos);
+  layers.position.clear();
+  EXPECT_NE(refusal().find("UV.Y"), std::string::npos);
+  layers.uv.clear();
+  EXPECT_EQ(names(), std::vector<std::string>{});
+  write_exr(path("a.exr"), layers, attributes(), Compression::dwaa);
+  expect_same(path("a.exr"), {"Z"}, Imf::FLOAT, layers.depth);
+  expect_same(path("a.exr"), {"id.object"}, Imf::UINT, layers.object_id);
+  expect_same(path("a.exr"), {"tests"}, Imf::FLOAT, layers.tests);
+  EXPECT_TRUE(exr_is_whole(path("a.exr"), 37, 53));
+  EXPECT_EQ(compression_conflict(Compression::dwaa, {"Z", "albedo", "id", "tests"}), "");
+  EXPECT_EQ(compression_conflict(Compression::piz, {"N", "P"}), "");
+}
+
+TEST_F(ExrWriterTest, RefusesWhatDoesNotFit) {
+  FrameLayers layers = tiny();
+  const auto refusal = [&](const FrameAttributes& with) {
+    return error_of(ErrorKind::usage, [&] { write_exr(path("a.exr"), layers, with, Compression::zip); });
+  };
+  FrameAttributes with = attributes();
+  with.fps = 0;
+  EXPECT_EQ(refusal(with), "EXR: frames per second must be a positive number");
+  with = attributes();
+  with.frame = 1ll << 40;
+  EXPECT_EQ(refusal(with), "EXR: frame 1099511627776 does not fit an attribute");
+  layers.normal = {1, 2};
+  EXPECT_EQ(refusal(attributes()), "EXR: layer N has 2 values, not 3");
+  layers.height = 0;
+  EXPECT_EQ(refusal(attributes()), "EXR: 1x0 is not a size of an image");
+  EXPECT_EQ(names(), std::vector<std::string>{});
+}
+
+TEST_F(ExrWriterTest, FailuresNameTheFileAndLeaveNothing) {
+  EXPECT_EQ(error_of(ErrorKind::io, [&] { write_exr(path("no/a.exr"), tiny(), attributes(), Compression::zip); }),
+            path("no/a.exr") + ": cannot create: No such file or directory");
+  // A disk that fills up: at any point of the file, down to the chunk table that OpenEXR writes while closing.
+  write_exr(path("a.exr"), full(), attributes(), Compression::none);
+  const auto size = static_cast<rlim_t>(std::filesystem::file_size(path("a.exr")));
+  std::filesystem::remove(path("a.exr"));
+  for (const rlim_t room : {rlim_t{0}, rlim_t{100}, size / 2, size - 1}) {
+    const int status = test::status_in_child([&] {
+      signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{room, room};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      const std::string text =
+          error_of(ErrorKind::io, [&] { write_exr(path("a.exr"), full(), attributes(), Compression::none); });
+      _exit(text == path("a.exr") + ": cannot write: File too large" ? 0 : 1);
+    });
+    EXPECT_EQ(status, 0) << room;
+    EXPECT_EQ(names(), std::vector<std::string>{});
+  }
+}
+
+TEST_F(ExrWriterTest, WholeMeansEveryByteIsThere) {
+  for (const Compression compression : {Compression::none, Compression::zip, Compression::piz}) {
+    SCOPED_TRACE(name_of(compression));
+    write_exr(path("a.exr"), full(8, 40), attributes(), compression);
+    const std::string whole = contents(path("a.exr"));
+    ASSERT_TRUE(exr_is_whole(path("a.exr"), 8, 40));
+    EXPECT_FALSE(exr_is_whole(path("a.exr"), 8, 41));
+    EXPECT_FALSE(exr_is_whole(path("a.exr"), 40, 8));
+    for (std::size_t size = 0; size < whole.size(); size += size + 150 < whole.size() ? 150 : 3) {
+      put(path("cut.exr"), whole.substr(0, size));
+      ASSERT_FALSE(exr_is_whole(path("cut.exr"), 8, 40)) << size << " of " << whole.size();
+    }
+  }
+}
+
+TEST_F(ExrWriterTest, WholeNeverThrows) {
+  EXPECT_FALSE(exr_is_whole(path("missing.exr"), 1, 1));
+  EXPECT_FALSE(exr_is_whole(folder_, 1, 1));
+  EXPECT_FALSE(exr_is_whole("", 1, 1));
+  put(path("text.exr"), "not a picture");
+  EXPECT_FALSE(exr_is_whole(path("text.exr"), 1, 1));
+  write_exr(path("a.exr"), full(8, 40), attributes(), Compression::zip);
+  const std::string whole = contents(path("a.exr"));
+  std::mt19937 random(1);
+  for (int i = 0; i < 300; ++i) {
+    std::string broken = whole;
+    for (int j = 0; j < 3; ++j) broken[random() % broken.size()] = static_cast<char>(random());
+    put(path("broken.exr"), broken);
+    (void)exr_is_whole(path("broken.exr"), 8, 40);
+  }
+}
+
+TEST(ExrCompression, Names) {
+  for (const char* name : {"none", "rle", "zips", "zip", "piz", "dwaa"})
+    EXPECT_STREQ(name_of(parse_compression(name)), name);
+  EXPECT_EQ(error_of(ErrorKind::usage, [] { (void)parse_compression("jpeg"); }),
+            "--compression \"jpeg\": not one of none, rle, zips, zip, piz, dwaa");
+}
+
+}  // namespace
+}  // namespace sheaf
