@@ -13,15 +13,15 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-import bench_scenes  # noqa: E402
-import camera_paths  # noqa: E402
-import cornell  # noqa: E402
-import geometry_scenes  # noqa: E402
-import material_scenes  # noqa: E402
-import motion_scenes  # noqa: E402
-import odd_scenes  # noqa: E402
-import optics_scenes  # noqa: E402
-import whitted  # noqa: E402
+import bench_scenes
+import camera_paths
+import cornell
+import geometry_scenes
+import material_scenes
+import motion_scenes
+import odd_scenes
+import optics_scenes
+import whitted
 
 HERE = Path(__file__).resolve().parent
 

@@ -2,7 +2,6 @@
 """Triangle shapes and a little vector algebra. Counter-clockwise seen from outside; metres; +Y up."""
 
 from dataclasses import dataclass, replace
-from typing import Optional
 
 import numpy as np
 
@@ -13,8 +12,8 @@ from glb import snap
 class Shape:
     positions: np.ndarray
     triangles: np.ndarray
-    normals: Optional[np.ndarray] = None
-    uvs: Optional[np.ndarray] = None
+    normals: np.ndarray | None = None
+    uvs: np.ndarray | None = None
 
     def moved(self, offset) -> "Shape":
         return replace(self, positions=self.positions + np.asarray(offset, dtype=np.float64))

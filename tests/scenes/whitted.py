@@ -3,6 +3,8 @@
 before a mirror sphere over a checkered floor, here with a moving light and camera, a skinned tentacle and a
 morphing flower. Four seconds, the last key equal to the first."""
 
+import itertools
+
 import numpy as np
 
 from glb import LINEAR, LINEAR_MIPMAP_LINEAR, REPEAT, Glb, snap
@@ -112,7 +114,7 @@ def tentacle(glb: Glb):
     mesh = glb.mesh(primitive, "tentacle")
     step = TENTACLE_HEIGHT / JOINTS
     bones = [glb.node(f"joint {k}", TENTACLE if k == 0 else (0, step, 0)) for k in range(JOINTS)]
-    for parent, child in zip(bones, bones[1:]):
+    for parent, child in itertools.pairwise(bones):
         glb.json["nodes"][parent]["children"] = [child]
     inverse = np.tile(np.eye(4), (JOINTS, 1, 1))
     inverse[:, 1, 3] = -step * np.arange(JOINTS)
