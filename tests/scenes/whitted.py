@@ -199,7 +199,7 @@ def build() -> bytes:
     arm, bones = tentacle(glb)
     blob = flower(glb)
     key = glb.light("key", "point", 190, (1, 0.96, 0.88), {"translation": (-3.2, 5.2, 3.4)})
-    sun = look_rotation((0, 0, 0), (0.35, -0.9, -0.25), (0, 0, 1))  # 64° above the horizon: over the sky's rim
+    sun = look_rotation((0, 0, 0), (-0.38, -0.9, -0.22), (0, 0, 1))  # 64° above the horizon: over the sky's rim
     fill = glb.light("fill", "directional", 0.9, (0.75, 0.85, 1), {"rotation": quaternion(sun)})
     lens = glb.perspective("camera", np.radians(39), 16 / 9, 0.05, 200)
     eye = glb.node("camera", camera=lens)
