@@ -138,14 +138,16 @@ class JobFailed(JobError):  # noqa: N818
     """The job failed.
 
     Attributes:
-        code: the service's word for the kind of failure, for example "input" or "device".
+        code: the service's word for the kind of failure, for example "bad-scene".
         message: one line that names the place and the reason.
+        exit_code: that of the renderer; None where it had none, for example because it was killed.
     """
 
-    def __init__(self, job_id: str, code: str, message: str) -> None:
+    def __init__(self, job_id: str, code: str, message: str, exit_code: int | None = None) -> None:
         super().__init__(job_id, f"job {job_id} failed ({code}): {message}")
         self.code = code
         self.message = message
+        self.exit_code = exit_code
 
 
 class JobCancelled(JobError):  # noqa: N818

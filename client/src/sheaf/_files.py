@@ -33,15 +33,15 @@ class WholeFile:
         self._digest.update(data)
         self._received += len(data)
 
-    def finish(self, response: httpx.Response) -> None:
-        """Checks what came against what was announced, and renames.
+    def finish(self, response: httpx.Response, sha256: str | None = None) -> None:
+        """Checks what came against what was announced, in the answer or before, and renames.
 
         Raises:
             TransportError: bytes are missing, or they are not those that the service has.
         """
         check_length(response, self._received)
-        announced = sha256_of(response)
-        if announced is not None and announced != self._digest.hexdigest():
+        announced = {sha256, sha256_of(response)} - {None}
+        if announced - {self._digest.hexdigest()}:
             raise TransportError(f"{response.request.url}: the bytes that came are not those of its checksum")
         self._file.flush()
         os.fsync(self._file.fileno())
@@ -86,13 +86,16 @@ def is_same(target: Path, response: httpx.Response) -> bool:
     if not announced.isdigit() or not target.is_file() or target.stat().st_size != int(announced):
         return False
     digest = sha256_of(response)
-    if digest is None:
-        return True
-    with target.open("rb") as file:
-        known = hashlib.sha256()
+    return digest is None or file_sha256(target) == digest
+
+
+def file_sha256(path: Path) -> str:
+    """The SHA-256 of a file, in hexadecimal."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
         while block := file.read(1 << 20):
-            known.update(block)
-    return known.hexdigest() == digest
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def _part_name(target: Path) -> Path:

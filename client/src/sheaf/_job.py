@@ -7,14 +7,12 @@ import contextlib
 import os
 from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
-from typing import Literal
 
 from . import _calls
+from ._download import Wanted, fetch, plan
 from ._errors import JobCancelled, JobFailed, NotFound, ProtocolError, SheafError
 from ._exr import Frame, read_exr
-from ._files import whole_file
 from ._models import Event, JobInfo, JobState, Progress
-from ._names import FrameNames
 from ._progress import ProgressBar
 from ._session import Session
 from ._stats import Stats
@@ -145,7 +143,7 @@ class Job:
         Raises:
             As `frame`.
         """
-        for number in self._numbers(numbers):
+        for number in self.refresh().info.rendered if numbers is None else numbers:
             yield self.frame(number)
 
     def preview(self, number: int) -> bytes:
@@ -178,10 +176,11 @@ class Job:
 
     def delete(self) -> None:
         """Stops the job and removes it with all its frames; does nothing where it is gone already."""
-        try:
+        with contextlib.suppress(NotFound):
             self._session.call(_calls.delete(self.id))
-        except NotFound:
-            return
+            # A service may only stop what runs, and remove it once it has ended.
+            self.refresh()
+            self._session.call(_calls.delete(self.id))
 
     def download(
         self,
@@ -189,20 +188,21 @@ class Job:
         previews: bool = False,
         overwrite: bool = False,
         *,
-        name: str = "frame.####.exr",
+        name: str | None = None,
         numbers: Iterable[int] | None = None,
         on_file: Callable[[int, Path], object] | None = None,
     ) -> list[Path]:
         """Fetches frames into a folder, made where it is missing.
 
-        Files appear under their name only when whole. One that is there already with the service's length (and its
-        checksum, where the service gives one) is left alone.
+        Files appear under their name only when whole, with the checksum that the service tells. One that is there
+        already and the same is left alone.
 
         Args:
             folder: where to.
             previews: the PNG beside each frame too.
             overwrite: fetch again what is there.
-            name: pattern of the names; the run of `#` becomes the frame number.
+            name: pattern of the names, the run of `#` becomes the frame number; None takes the service's names, which
+                are the scene's with the number in four digits, or the setting `name`.
             numbers: which frames; None gives all that are rendered by now.
             on_file: called with frame number and path as each file is there.
 
@@ -214,38 +214,21 @@ class Job:
             OSError: a file cannot be written.
             ValueError: the name pattern is not one.
         """
-        names = FrameNames(name)
         target = Path(folder)
+        files = plan(self.refresh().info, target, numbers, name, previews)
         target.mkdir(parents=True, exist_ok=True)
-        paths = []
-        for number in self._numbers(numbers):
-            wanted = [(names.frame(number), "exr"), (names.preview(number), "png")]
-            for file_name, kind in wanted if previews else wanted[:1]:
-                path = target / file_name
-                self._fetch(number, "exr" if kind == "exr" else "png", path, overwrite)
-                paths.append(path)
-                if on_file:
-                    on_file(number, path)
-        return paths
+        for wanted in files:
+            if overwrite or not self._is_there(wanted):
+                fetch(self._session, self.id, wanted)
+            if on_file:
+                on_file(wanted.number, wanted.path)
+        return [wanted.path for wanted in files]
 
-    def _fetch(self, number: int, kind: Literal["exr", "png"], path: Path, overwrite: bool) -> None:
-        if path.exists() and not overwrite and self._session.call(_calls.same_frame(self.id, number, kind, path)):
-            return
-        failures = 0
-        while True:
-            try:
-                with whole_file(path) as file, self._session.stream(_calls.frame(self.id, number, kind)) as response:
-                    for block in response.iter_bytes(1 << 20):
-                        file.write(block)
-                    file.finish(response)
-            except SheafError as error:
-                failures += 1
-                pause = self._session.retry.pause(failures, error)
-                if pause is None:
-                    raise
-                self._session.sleep(pause)
-            else:
-                return
+    def _is_there(self, wanted: Wanted) -> bool:
+        there = wanted.is_there()
+        if there is None:
+            return self._session.call(_calls.same_frame(self.id, wanted.number, wanted.kind, wanted.path))
+        return there
 
     def _listen(self, watch: Watch) -> Generator[Event, None, None]:
         with self._session.stream(_calls.listen(self.id, watch.last)) as response:
@@ -263,18 +246,21 @@ class Job:
         yield from page.events
         watch.skip_to(page.last)
 
-    def _numbers(self, numbers: Iterable[int] | None) -> list[int]:
-        return self.refresh().info.rendered if numbers is None else list(numbers)
-
     def _unless_bad(self) -> Job:
         if self.state == "failed":
-            error = self.info.error or {}
-            raise JobFailed(self.id, str(error.get("code", "unknown")), str(error.get("message", "no reason given")))
+            raise _failure(self.info)
         if self.state == "cancelled":
             raise JobCancelled(self.id)
         if self.state != "done":
             raise ProtocolError(f"job {self.id}: its events ended, but it is {self.state}")
         return self
+
+
+def _failure(info: JobInfo) -> JobFailed:
+    error = info.error or {}
+    code, message = (str(error.get(name) or "unknown") for name in ("code", "message"))
+    exit_code = error.get("exit_code")
+    return JobFailed(info.id, code, message, exit_code if isinstance(exit_code, int) else None)
 
 
 def _no_report(_: Progress) -> None:

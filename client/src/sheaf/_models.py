@@ -36,10 +36,21 @@ class Progress:
 
 @dataclass(frozen=True)
 class FrameState:
-    """One frame of a job; `state` is "pending", "running", "done" or "failed"."""
+    """One frame of a job.
+
+    Attributes:
+        frame: its number.
+        state: "done"; "pending" while it may still come; "missing" where the job ended without it.
+        name: the file name that the service gave it.
+        bytes: length of the EXR file.
+        sha256: of the EXR file, in hexadecimal.
+    """
 
     frame: int
     state: str
+    name: str | None = None
+    bytes: int | None = None
+    sha256: str | None = None
 
 
 @dataclass(frozen=True)
@@ -53,6 +64,9 @@ class JobInfo:
         frames: each frame's state, in rendering order.
         settings: the settings in force, defaults resolved.
         error: `code` and `message` where the job failed.
+        warnings: what the renderer warned of.
+        created: when it was submitted, RFC 3339.
+        expires: when the service will remove it; None where it will not.
         raw: the whole answer.
     """
 
@@ -62,6 +76,9 @@ class JobInfo:
     frames: Sequence[FrameState] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     error: Mapping[str, Any] | None = None
+    warnings: Sequence[str] = ()
+    created: str | None = None
+    expires: str | None = None
     raw: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @property
@@ -77,12 +94,13 @@ class JobInfo:
     def after(self, event: Event) -> JobInfo:
         """What is known once an event has been heard."""
         news = event.data
-        if "frame" in news:
-            return self
-        state = job_state(news["state"], "event.state") if "state" in news else self.state
-        told = _mapping(news, "progress") or (news if "done" in news else None)
-        progress = replace(self.progress, state=state) if told is None else progress_of(state, told)
-        return replace(self, state=state, progress=progress)
+        is_jobs = "frame" not in news and "state" in news  # a frame's event has a state too, but it is the frame's
+        state = job_state(news["state"], "event.state") if is_jobs else self.state
+        counts = _mapping(news, "progress") or news
+        told = progress_of(state, counts)
+        if "done" not in counts or told.done < self.progress.done:  # no news of it, or from before the last answer
+            told = replace(self.progress, state=state)
+        return replace(self, state=state, progress=told)
 
     @classmethod
     def from_json(cls, body: Mapping[str, Any]) -> JobInfo:
@@ -100,6 +118,9 @@ class JobInfo:
             frames=frames,
             settings=_mapping(body, "settings"),
             error=_mapping(body, "error") or None,
+            warnings=[str(warning) for warning in _list(body, "warnings")],
+            created=_optional(body, "created", str, "job"),
+            expires=_optional(body, "expires", str, "job"),
             raw=dict(body),
         )
 
@@ -164,14 +185,8 @@ def progress_of(state: JobState, body: Mapping[str, Any]) -> Progress:
     """Reads a progress object."""
     done, total = (_get(body, name, int, "progress", 0) for name in ("done", "total"))
     share = done / total if total else 0.0
-    eta = body.get("eta_s")
-    return Progress(
-        state,
-        done,
-        total,
-        fraction=min(1.0, max(0.0, _get(body, "fraction", float, "progress", share))),
-        eta_s=None if eta is None else _get(body, "eta_s", float, "progress"),
-    )
+    fraction = min(1.0, max(0.0, _get(body, "fraction", float, "progress", share)))
+    return Progress(state, done, total, fraction, _optional(body, "eta_s", float, "progress"))
 
 
 def job_state(value: Any, place: str) -> JobState:
@@ -185,15 +200,26 @@ def _frame_state(index: int, entry: Any) -> FrameState:
     place = f"job.frames[{index}]"
     if not isinstance(entry, Mapping):
         raise ProtocolError(f"{place}: not an object")
-    return FrameState(_get(entry, "frame", int, place), _get(entry, "state", str, place))
+    return FrameState(
+        _get(entry, "frame", int, place),
+        _get(entry, "state", str, place),
+        name=_optional(entry, "name", str, place),
+        bytes=_optional(entry, "bytes", int, place),
+        sha256=_optional(entry, "sha256", str, place),
+    )
 
 
 def _get(body: Mapping[str, Any], name: str, kind: Callable[[Any], T], place: str, default: T | None = None) -> T:
-    value = body.get(name, default)
+    value = body.get(name)
+    value = default if value is None else value
     accepted = (int, float) if kind is float else (kind,)
     if isinstance(value, bool) or not isinstance(value, accepted):  # type: ignore[arg-type]
         raise ProtocolError(f"{place}.{name}: {value!r}")
     return kind(value)
+
+
+def _optional(body: Mapping[str, Any], name: str, kind: Callable[[Any], T], place: str) -> T | None:
+    return None if body.get(name) is None else _get(body, name, kind, place)
 
 
 def _list(body: Mapping[str, Any], name: str) -> list[Any]:

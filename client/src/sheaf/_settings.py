@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from ._frames import frame_list
+
+Strategy = Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"]
+Sort = Literal["auto", "on", "off"]
+Primary = Literal["raster", "trace"]
+Compression = Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
 
 
 class RenderSettings(TypedDict, total=False):
@@ -16,40 +22,42 @@ class RenderSettings(TypedDict, total=False):
     `None` counts as not given. The service checks all values and answers `InvalidRequest` with the reason.
     """
 
-    frames: str | int | Iterable[int]
+    frames: str | int | Iterable[int] | None
     """Absolute frame numbers: `"0-99"`, `"0-99:2,200"`, `17`, `range(100)`; frame f shows f / fps seconds."""
-    fps: float | str
+    fps: float | str | None
     """Frames a second, or a fraction such as "24000/1001"."""
-    animation: str | int
+    animation: str | int | None
     """The animation's name or index, or "all"."""
-    camera_node: str | int
+    camera_node: str | int | None
     """A camera of the scene by node name or index; not together with a camera path."""
-    size: str | tuple[int, int]
+    size: str | tuple[int, int] | None
     """Width and height in pixels: `"640x360"` or `(640, 360)`."""
-    spp: int | str
+    spp: int | str | None
     """Samples a pixel."""
-    depth: int
+    depth: int | None
     """Generations of reflected and refracted rays."""
-    cutoff: float
+    cutoff: float | None
     """Rays whose weight is below this are not followed."""
-    strategy: Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"]
+    strategy: Strategy | None
     """How rays find triangles; never changes a pixel."""
-    sort: Literal["auto", "on", "off"]
+    sort: Sort | None
     """Whether rays are sorted by hash."""
-    primary: Literal["raster", "trace"]
+    primary: Primary | None
     """How primary hits are found."""
-    aov: str | Sequence[str]
+    aov: str | Sequence[str] | None
     """Extra layers: Z, N, P, albedo, UV, motion, id, tests, ..."""
-    compression: Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
+    compression: Compression | None
     """EXR compression."""
-    memory: int
+    memory: int | None
     """Device memory budget, MiB."""
-    device: str | int
+    device: str | int | None
     """Device by name or index, where the service lets callers choose."""
-    opaque: bool
+    opaque: bool | None
     """Every surface opaque and two-sided."""
-    preview: bool
-    """A tone-mapped PNG beside each frame."""
+    preview: bool | None
+    """A tone-mapped PNG beside each frame; the service makes them unless told not to."""
+    name: str | None
+    """File names with #### for the frame number, in `Job.download` and in the service's zip."""
 
 
 _NAMES = frozenset(RenderSettings.__annotations__)
@@ -78,11 +86,21 @@ def _wire(name: str, value: Any) -> Wire:
         return _size(value)
     if name == "aov" and not isinstance(value, str):
         return ",".join(str(layer) for layer in value)
+    if name in ("fps", "spp") and isinstance(value, str):
+        value = _number(value)
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"{name} must be finite, not {value}")
     if isinstance(value, (str, int, float)):
         return value
     raise TypeError(f"{name} cannot be a {type(value).__name__}")
+
+
+def _number(text: str) -> Wire:
+    """A number given as text, as a number; other text, such as "24000/1001", as it is."""
+    for kind in (int, float):
+        with contextlib.suppress(ValueError):
+            return kind(text)
+    return text
 
 
 def _size(value: Any) -> str:

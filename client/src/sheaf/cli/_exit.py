@@ -17,9 +17,6 @@ from .._errors import (
 
 USAGE, INPUT, DEVICE, LIMIT, IO, INTERRUPTED = 2, 3, 4, 5, 6, 130
 
-# The words that a failed job's `error.code` uses.
-_JOB_CODES = {"usage": USAGE, "input": INPUT, "device": DEVICE, "limit": LIMIT, "io": IO}
-
 
 class UsageError(Exception):
     """The command line is wrong in a way that argparse does not see."""
@@ -43,5 +40,5 @@ _CODES: tuple[tuple[tuple[type[BaseException], ...], int], ...] = (
 def exit_code(error: BaseException) -> int:
     """The exit code of a failure; 6, reading, writing and the network, is the one worth another try."""
     if isinstance(error, JobFailed):
-        return _JOB_CODES.get(error.code, IO)
+        return error.exit_code if error.exit_code in (USAGE, INPUT, DEVICE, LIMIT, IO) else IO
     return next((code for types, code in _CODES if isinstance(error, types)), IO)

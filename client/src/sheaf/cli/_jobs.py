@@ -77,7 +77,8 @@ def run_cancel(arguments: argparse.Namespace, report: Report) -> None:
 
 def run_download(arguments: argparse.Namespace, report: Report) -> None:
     """Fetches frames."""
-    arguments.name = checked_name(arguments.name or "frame.####.exr")
+    if arguments.name:
+        checked_name(arguments.name)
     with connect(arguments) as client:
         fetch(client.job(arguments.job), arguments, report, wait=arguments.wait, overwrite=arguments.overwrite)
 

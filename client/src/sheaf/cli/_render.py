@@ -9,7 +9,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 from shlex import quote
-from typing import Any
+from typing import Any, get_args
 
 from .._errors import FrameError, JobError
 from .._exr import read_exr
@@ -17,18 +17,14 @@ from .._files import write_whole
 from .._frames import frame_list, parse_frames
 from .._job import Job
 from .._names import FrameNames, default_pattern
+from .._settings import Compression, Primary, Sort, Strategy
 from ._connect import add_output, add_server, checked_name, connect
 from ._exit import UsageError
 from ._report import Report
 
 _NUMBERS = {"fps": str, "spp": str, "depth": int, "cutoff": float, "memory": int}
 _TEXTS = ("animation", "camera_node", "size", "aov", "device")
-_CHOICES = {
-    "strategy": "auto hybrid crsh rsh frustum classify bvh brute rayquery reference",
-    "sort": "auto on off",
-    "primary": "raster trace",
-    "compression": "none rle zips zip piz dwaa",
-}
+_CHOICES = {"strategy": Strategy, "sort": Sort, "primary": Primary, "compression": Compression}
 
 
 def add(commands: Any) -> None:
@@ -51,7 +47,7 @@ def add(commands: Any) -> None:
     for name in _TEXTS:
         settings.add_argument(f"--{name.replace('_', '-')}")
     for name, choices in _CHOICES.items():
-        settings.add_argument(f"--{name}", choices=choices.split())
+        settings.add_argument(f"--{name}", choices=get_args(choices))
     settings.add_argument("--opaque", action="store_true", default=None)
     parser.set_defaults(run=run)
 
@@ -68,7 +64,7 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         report.finish("all frames are there already")
         return
     with connect(arguments) as client:
-        settings = {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque")}
+        settings = {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque", "name")}
         settings |= {"frames": frames, "preview": arguments.preview or None}
         job = client.submit(arguments.scene, arguments.camera, idempotency_key=arguments.idempotency_key, **settings)
         report.submitted(job.id)
@@ -119,7 +115,7 @@ def detaching(job: Job, arguments: argparse.Namespace, report: Report) -> Iterat
             report.always(f"cancelled job {job.id}")
         else:
             report.always(
-                f"job {job.id} goes on. Come back: sheaf-client download {job.id} --wait --out {quote(arguments.out)} "
-                f"--name {quote(arguments.name)}; stop it: sheaf-client cancel {job.id}"
+                f"job {job.id} goes on. Come back: sheaf-client download {job.id} --wait --out {quote(arguments.out)}; "
+                f"stop it: sheaf-client cancel {job.id}"
             )
         raise

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Which files a download brings, and bringing them. Only `fetch` does I/O on the network."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from . import _calls
+from ._errors import SheafError
+from ._files import file_sha256, whole_file
+from ._models import FrameState, JobInfo
+from ._names import FrameNames
+from ._session import Session
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A file to bring; `bytes` and `sha256` where the service said them beforehand."""
+
+    number: int
+    kind: Literal["exr", "png"]
+    path: Path
+    bytes: int | None = None
+    sha256: str | None = None
+
+    def is_there(self) -> bool | None:
+        """Whether the file is there already, whole and the same; None where only the service can tell."""
+        if not self.path.is_file():
+            return False
+        if self.bytes is None or self.sha256 is None:
+            return None
+        return self.path.stat().st_size == self.bytes and file_sha256(self.path) == self.sha256
+
+
+def plan(info: JobInfo, folder: Path, numbers: Iterable[int] | None, name: str | None, previews: bool) -> list[Wanted]:
+    """The files of a download, in the order of the frames.
+
+    Raises:
+        ValueError: the name pattern is not one.
+    """
+    names = FrameNames(name) if name is not None else None
+    known = {frame.frame: frame for frame in info.frames}
+    wanted = []
+    for number in info.rendered if numbers is None else numbers:
+        frame = known.get(number, FrameState(number, "unknown"))
+        path = folder / (names.frame(number) if names else _service_name(frame))
+        wanted.append(Wanted(number, "exr", path, frame.bytes, frame.sha256))
+        if previews:
+            wanted.append(Wanted(number, "png", path.with_suffix(".png")))
+    return wanted
+
+
+def fetch(session: Session, job_id: str, wanted: Wanted) -> None:
+    """Brings one file, again where the session's policy says so.
+
+    Raises:
+        TransportError: it did not come whole, again and again.
+    """
+    failures = 0
+    while True:
+        try:
+            _fetch_once(session, job_id, wanted)
+        except SheafError as error:
+            failures += 1
+            pause = session.retry.pause(failures, error)
+            if pause is None:
+                raise
+            session.sleep(pause)
+        else:
+            return
+
+
+def _fetch_once(session: Session, job_id: str, wanted: Wanted) -> None:
+    call = _calls.frame(job_id, wanted.number, wanted.kind)
+    with whole_file(wanted.path) as file, session.stream(call) as response:
+        for block in response.iter_bytes(1 << 20):
+            file.write(block)
+        file.finish(response, wanted.sha256)
+
+
+def _service_name(frame: FrameState) -> str:
+    """The service's name for a frame's file where it is a plain one; it is not trusted to stay in the folder."""
+    name = frame.name or ""
+    is_plain = name.isprintable() and not name.startswith(".") and not set(name) & set("/\\:")
+    return name if is_plain and name.endswith(".exr") else FrameNames("frame.####.exr").frame(frame.frame)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""What the tests share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import OpenEXR
+import pytest
+from fake_service import FakeJob, FakeService
+
+import sheaf
+
+
+@pytest.fixture
+def service() -> Iterator[FakeService]:
+    fake = FakeService()
+    yield fake
+    fake.close()
+
+
+@pytest.fixture
+def client(service: FakeService, pauses: list[float]) -> Iterator[sheaf.Client]:
+    with sheaf.Client(service.url) as made:
+        yield made
+
+
+@pytest.fixture
+def pauses(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Nothing sleeps; the pauses are listed, and the clock goes on by them."""
+    taken: list[float] = []
+    monkeypatch.setattr("sheaf._session.time.sleep", taken.append)
+    return taken
+
+
+@pytest.fixture
+def exr(tmp_path: Path) -> bytes:
+    return exr_bytes(tmp_path, colour(4, 6))
+
+
+@pytest.fixture
+def done_job(service: FakeService, exr: bytes) -> FakeJob:
+    """Frames 3 and 4 rendered."""
+    return service.add(FakeJob("abc", frames={3: exr, 4: exr}))
+
+
+def colour(height: int, width: int) -> dict[str, npt.NDArray[Any]]:
+    ramp = np.linspace(0.0, 2.0, height * width, dtype=np.float16).reshape(height, width)
+    return {"R": ramp, "G": ramp * np.float16(0.5), "B": ramp * np.float16(0.25), "A": np.ones_like(ramp)}
+
+
+def exr_bytes(folder: Path, channels: dict[str, npt.NDArray[Any]], **attributes: Any) -> bytes:
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **attributes}
+    path = folder / "made.exr"
+    OpenEXR.File(header, dict(channels)).write(str(path))
+    data = path.read_bytes()
+    path.unlink()
+    return data

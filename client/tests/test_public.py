@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""Names that users rely on: adding is free, taking away is not."""
+
+from __future__ import annotations
+
+import inspect
+
+import sheaf
+
+NAMES = [
+    "ApiError",
+    "CameraKey",
+    "CameraPath",
+    "Client",
+    "Conflict",
+    "DeviceStats",
+    "Event",
+    "Frame",
+    "FrameError",
+    "FrameState",
+    "FrameStats",
+    "InvalidRequest",
+    "Job",
+    "JobCancelled",
+    "JobError",
+    "JobFailed",
+    "JobInfo",
+    "JobState",
+    "Layer",
+    "LeftOut",
+    "NotFound",
+    "Progress",
+    "ProgressBar",
+    "ProtocolError",
+    "RenderSettings",
+    "RetryPolicy",
+    "SceneError",
+    "SceneStats",
+    "SheafError",
+    "Stats",
+    "TestStats",
+    "Timeout",
+    "TooLarge",
+    "TotalStats",
+    "TransportError",
+    "Unauthorized",
+    "Unavailable",
+    "__version__",
+    "read_exr",
+]
+
+MEMBERS = {
+    sheaf.Client: "close health job jobs submit",
+    sheaf.Job: "cancel delete download events frame frames id info log preview progress refresh state stats wait",
+    sheaf.Frame: "attributes layers number rgba size",
+    sheaf.CameraPath: "fov_axis fps from_dict interpolation keys load look_at_keys loop save to_dict turntable",
+    sheaf.JobInfo: "created error expires frames id is_over progress raw rendered settings state warnings",
+    sheaf.Progress: "done eta_s fraction state total",
+    sheaf.Event: "data ends_job id type",
+}
+
+SETTINGS = """animation aov camera_node compression cutoff depth device fps frames memory name opaque preview
+primary size sort spp strategy"""
+
+
+def test_exported_names() -> None:
+    assert sorted(sheaf.__all__) == sorted(NAMES)
+    assert all(hasattr(sheaf, name) for name in NAMES)
+
+
+def test_members() -> None:
+    for owner, names in MEMBERS.items():
+        fields = set(getattr(owner, "__dataclass_fields__", ())) | {name for name in dir(owner) if name[0] != "_"}
+        fields |= {"info"} if owner is sheaf.Job else set()
+        missing = set(names.split()) - fields
+        assert not missing, f"{owner.__name__}: {missing}"
+
+
+def test_settings() -> None:
+    assert sorted(sheaf.RenderSettings.__annotations__) == sorted(SETTINGS.split())
+
+
+def test_parameters() -> None:
+    def parameters(function: object) -> list[str]:
+        return [name for name in inspect.signature(function).parameters if name != "self"]  # type: ignore[arg-type]
+
+    assert parameters(sheaf.Client) == ["url", "token", "timeout", "transport", "retry"]
+    assert parameters(sheaf.Client.submit) == ["scene", "camera", "idempotency_key", "settings"]
+    assert parameters(sheaf.Client.jobs) == ["state", "page_size"]
+    assert parameters(sheaf.Job.wait) == ["progress", "timeout"]
+    assert parameters(sheaf.Job.frames) == ["numbers"]
+    assert parameters(sheaf.Job.download)[:3] == ["folder", "previews", "overwrite"]
+    assert parameters(sheaf.CameraPath.turntable)[:6] == ["center", "radius", "height", "seconds", "fps", "fov_degrees"]
+
+
+def test_the_tree_of_exceptions() -> None:
+    tree = {
+        sheaf.SheafError: (
+            sheaf.SceneError,
+            sheaf.FrameError,
+            sheaf.TransportError,
+            sheaf.ProtocolError,
+            sheaf.Timeout,
+            sheaf.ApiError,
+            sheaf.JobError,
+        ),
+        sheaf.ApiError: (
+            sheaf.InvalidRequest,
+            sheaf.Unauthorized,
+            sheaf.NotFound,
+            sheaf.Conflict,
+            sheaf.TooLarge,
+            sheaf.Unavailable,
+        ),
+        sheaf.JobError: (sheaf.JobFailed, sheaf.JobCancelled),
+        ValueError: (sheaf.SceneError, sheaf.FrameError),
+        TimeoutError: (sheaf.Timeout,),
+    }
+    for parent, children in tree.items():
+        assert all(issubclass(child, parent) for child in children)
+
+
+def test_every_public_thing_is_described() -> None:
+    for name in NAMES:
+        thing = getattr(sheaf, name)
+        if inspect.isclass(thing) or inspect.isfunction(thing):
+            assert thing.__doc__, name
