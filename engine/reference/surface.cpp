@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "reference/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/texture.hpp"
+
+namespace sheaf::reference {
+namespace {
+
+glm::dvec3 unit(const glm::dvec3& v, const glm::dvec3& otherwise) {
+  const double length = glm::length(v);
+  return length > 0 && std::isfinite(length) ? v / length : otherwise;
+}
+
+/// The value at a point of the triangle, or `otherwise` where the mesh has none.
+template <class Result, class Value>
+Result interpolate(const std::vector<Value>& values, const glm::uvec3& v, const glm::dvec3& b,
+                   const Result& otherwise) {
+  if (values.empty()) return otherwise;
+  return Result(values[v.x]) * b.x + Result(values[v.y]) * b.y + Result(values[v.z]) * b.z;
+}
+
+}  // namespace
+
+struct Surfaces::Point {
+  const ReferenceTriangle& triangle;
+  const WorldInstance& instance;
+  const Mesh& mesh;
+  const Material& material;
+  glm::uvec3 v;
+  glm::dvec3 b;
+  glm::dvec2 uv0, uv1;
+
+  [[nodiscard]] glm::dvec4 look_up(const Scene& scene, const TextureUse& use, bool srgb = false) const {
+    return reference::look_up(scene, use, uv0, uv1, srgb);
+  }
+};
+
+Surfaces::Point Surfaces::point(const Hit& hit) const {
+  const ReferenceTriangle& t = world_.triangles[hit.triangle];
+  const Mesh& mesh = scene_.meshes[t.mesh];
+  const glm::uvec3 v = mesh.triangles[t.triangle_in_mesh];
+  return {t,
+          world_.instances[t.instance],
+          mesh,
+          scene_.materials[mesh.material],
+          v,
+          hit.barycentric,
+          interpolate(mesh.uv0, v, hit.barycentric, glm::dvec2(0)),
+          interpolate(mesh.uv1, v, hit.barycentric, glm::dvec2(0))};
+}
+
+std::uint32_t Surfaces::material_of(const Hit& hit) const {
+  return scene_.meshes[world_.triangles[hit.triangle].mesh].material;
+}
+
+bool Surfaces::is_volume(std::uint32_t index) const {
+  const Material& m = scene_.materials[index];
+  return !opaque_ && m.transmission > 0 && m.thickness > 0;
+}
+
+glm::dvec4 Surfaces::base_color(const Point& p) const {
+  return glm::dvec4(p.material.base_color) * p.look_up(scene_, p.material.base_color_texture, true) *
+         interpolate(p.mesh.colors, p.v, p.b, glm::dvec4(1));
+}
+
+double Surfaces::coverage(const Point& p, double alpha) const {
+  return !opaque_ && p.material.alpha_mode == AlphaMode::blend ? std::clamp(alpha, 0.0, 1.0) : 1.0;
+}
+
+double Surfaces::transmission(const Point& p) const {
+  if (opaque_) return 0;
+  return std::clamp(p.material.transmission * p.look_up(scene_, p.material.transmission_texture).r, 0.0, 1.0);
+}
+
+bool Surfaces::exists(const Hit& hit) const {
+  const Material& m = scene_.materials[material_of(hit)];
+  return opaque_ || m.alpha_mode != AlphaMode::mask || base_color(point(hit)).a >= m.alpha_cutoff;
+}
+
+glm::dvec3 Surfaces::front_normal(const Hit& hit, const glm::dvec3& otherwise) const {
+  const ReferenceTriangle& t = world_.triangles[hit.triangle];
+  return unit(glm::cross(t.v[1] - t.v[0], t.v[2] - t.v[0]), otherwise) * world_.instances[t.instance].side;
+}
+
+glm::dvec3 Surfaces::shading_normal(const Point& p, const glm::dvec3& geometric) const {
+  const glm::dvec3 n = unit(interpolate(p.instance.normals, p.v, p.b, glm::dvec3(0)), geometric);
+  if (!p.material.normal_texture.present() || p.instance.tangents.empty()) return n;
+  const glm::dvec3 t = unit(interpolate(p.instance.tangents, p.v, p.b, glm::dvec3(0)), glm::dvec3(0));
+  const double handedness = p.mesh.tangents[p.v.x].w < 0 ? -1 : 1;  // the same at all three vertices
+  const glm::dvec3 bitangent = glm::cross(n, t) * (handedness * p.instance.side);
+  const glm::dvec3 texel = glm::dvec3(p.look_up(scene_, p.material.normal_texture)) * 2.0 - 1.0;
+  const double strength = p.material.normal_texture.strength;
+  return unit(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
+}
+
+Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction) const {
+  const Point p = point(hit);
+  const Material& m = p.material;
+  Surface s;
+  const glm::dvec3 parts[3] = {p.triangle.v[0] * p.b.x, p.triangle.v[1] * p.b.y, p.triangle.v[2] * p.b.z};
+  s.point = parts[0] + parts[1] + parts[2];
+  // The point is off its plane by a few ulps (1e-16) of the sums' terms, and so is the next test's view of the plane.
+  const glm::dvec3 size = glm::abs(parts[0]) + glm::abs(parts[1]) + glm::abs(parts[2]);
+  s.offset = 1e-12 * std::max({size.x, size.y, size.z});
+  const glm::dvec3 g = front_normal(hit, -direction);
+  const glm::dvec3 n = shading_normal(p, g);
+  s.front = glm::dot(g, direction) < 0;
+  s.geometric = s.front ? g : -g;
+  s.normal = s.front ? n : -n;
+  const glm::dvec4 base = base_color(p);
+  s.base = base;
+  s.alpha = coverage(p, base.a);
+  const glm::dvec4 metallic_roughness = p.look_up(scene_, m.metallic_roughness_texture);
+  s.metallic = std::clamp(m.metallic * metallic_roughness.b, 0.0, 1.0);
+  s.roughness = std::clamp(m.roughness * metallic_roughness.g, 0.0, 1.0);
+  s.emission = glm::dvec3(m.emissive) * glm::dvec3(p.look_up(scene_, m.emissive_texture, true));
+  s.occlusion = 1 + m.occlusion_texture.strength * (p.look_up(scene_, m.occlusion_texture).r - 1);
+  s.transmission = s.alpha < 1 ? 0 : transmission(p);
+  s.material = p.mesh.material;
+  s.volume = is_volume(s.material);
+  s.unlit = m.unlit;
+  s.ior = m.ior;
+  s.uv = p.uv0;
+  s.node = p.instance.node;
+  return s;
+}
+
+glm::dvec3 Surfaces::transmittance(const Hit& hit, const glm::dvec3& direction) const {
+  const Point p = point(hit);
+  const glm::dvec4 base = base_color(p);
+  if (!opaque_ && p.material.alpha_mode == AlphaMode::mask && base.a < p.material.alpha_cutoff) return glm::dvec3(1);
+  glm::dvec3 passed(0);
+  if (!p.material.unlit) {
+    const double metal = p.material.metallic * p.look_up(scene_, p.material.metallic_roughness_texture).b;
+    const double cosine = std::min(std::abs(glm::dot(front_normal(hit, -direction), direction)), 1.0);
+    const double share = transmission(p) * (1 - std::clamp(metal, 0.0, 1.0));
+    if (share > 0) passed = glm::dvec3(base) * (share * (1 - fresnel(cosine, 1, p.material.ior)));
+  }
+  const double a = coverage(p, base.a);
+  return glm::clamp((1 - a) + a * passed, 0.0, 1.0);
+}
+
+double fresnel(double cosine, double n1, double n2) {
+  const double eta = n1 / n2, sine2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
+  if (sine2 >= 1) return 1;
+  const double through = std::sqrt(1 - sine2);
+  const double s = (n1 * cosine - n2 * through) / (n1 * cosine + n2 * through);
+  const double p = (n2 * cosine - n1 * through) / (n2 * cosine + n1 * through);
+  return (s * s + p * p) / 2;
+}
+
+glm::dvec3 schlick(const glm::dvec3& f0, double cosine) {
+  return f0 + (1.0 - f0) * std::pow(std::clamp(1 - cosine, 0.0, 1.0), 5);
+}
+
+}  // namespace sheaf::reference

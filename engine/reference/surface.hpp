@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// What a hit needs to know about the surface there (SHADING.md: Geometry, Material at a point).
+#pragma once
+
+#include "reference/tracer.hpp"
+#include "reference/world.hpp"
+
+namespace sheaf::reference {
+
+struct Surface {
+  glm::dvec3 point;              // relative to the frame origin
+  double offset;                 // how far off the surface a new ray starts
+  glm::dvec3 geometric, normal;  // facing the ray
+  bool front;
+  glm::dvec3 base;
+  double alpha;  // coverage: 1 unless blended
+  double metallic, roughness;
+  glm::dvec3 emission;
+  double occlusion, transmission;
+  bool volume, unlit;
+  double ior;
+  glm::dvec2 uv;
+  std::uint32_t node, material;
+
+  /// A start on the side that `towards` points to.
+  [[nodiscard]] glm::dvec3 start(const glm::dvec3& towards) const {
+    return point + geometric * (glm::dot(geometric, towards) < 0 ? -offset : offset);
+  }
+};
+
+/// Reads the scene's surfaces; keeps references to both, which must outlive it.
+class Surfaces {
+ public:
+  Surfaces(const Scene& scene, const World& world, bool opaque) : scene_(scene), world_(world), opaque_(opaque) {}
+
+  [[nodiscard]] Surface at(const Hit& hit, const glm::dvec3& direction) const;
+
+  /// False for a point that an alpha mask cuts out.
+  [[nodiscard]] bool exists(const Hit& hit) const;
+
+  /// The light that passes straight through, as shadow rays see it.
+  [[nodiscard]] glm::dvec3 transmittance(const Hit& hit, const glm::dvec3& direction) const;
+
+  /// Unit, not turned towards anything: the front's.
+  [[nodiscard]] glm::dvec3 front_normal(const Hit& hit, const glm::dvec3& otherwise) const;
+
+  [[nodiscard]] const Material& material(std::uint32_t index) const { return scene_.materials[index]; }
+  [[nodiscard]] std::uint32_t material_of(const Hit& hit) const;
+  [[nodiscard]] bool is_volume(std::uint32_t material) const;
+
+ private:
+  struct Point;
+  [[nodiscard]] Point point(const Hit& hit) const;
+  [[nodiscard]] glm::dvec4 base_color(const Point& p) const;
+  [[nodiscard]] double coverage(const Point& p, double alpha) const;
+  [[nodiscard]] double transmission(const Point& p) const;
+  [[nodiscard]] glm::dvec3 shading_normal(const Point& p, const glm::dvec3& geometric) const;
+
+  const Scene& scene_;
+  const World& world_;
+  bool opaque_;
+};
+
+/// Unpolarised reflectance of a smooth interface from index n1 to n2; 1 in total internal reflection.
+[[nodiscard]] double fresnel(double cosine, double n1, double n2);
+[[nodiscard]] glm::dvec3 schlick(const glm::dvec3& f0, double cosine);
+
+}  // namespace sheaf::reference

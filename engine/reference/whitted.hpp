@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// The light that comes along one camera ray, with all the rays that follow from it (Whitted 1980; SHADING.md).
+#pragma once
+
+#include "reference/light.hpp"
+#include "reference/surface.hpp"
+#include "reference/tracer.hpp"
+
+namespace sheaf::reference {
+
+/// The volumes a ray is inside, outermost first; at most four, the outermost falls out.
+class Media {
+ public:
+  void push(std::uint32_t material);
+  void remove(std::uint32_t material);  // its topmost entry, if any
+  [[nodiscard]] std::uint32_t top() const { return count_ == 0 ? none : entries_[count_ - 1]; }
+
+ private:
+  std::array<std::uint32_t, 4> entries_{};
+  std::uint32_t count_ = 0;
+};
+
+struct Radiance {
+  glm::dvec3 color{0};
+  double alpha = 0;
+  Hit first;  // of the camera's ray
+};
+
+class Whitted {
+ public:
+  Whitted(const Tracer& tracer, const Surfaces& surfaces, std::vector<WorldLight> lights, glm::dvec3 environment,
+          const ReferenceSettings& settings)
+      : tracer_(tracer),
+        surfaces_(surfaces),
+        lights_(std::move(lights)),
+        environment_(environment),
+        settings_(settings) {}
+
+  [[nodiscard]] Radiance trace(const Ray& camera, ReferenceCounts& counts) const;
+
+ private:
+  struct Pending {
+    Ray ray;
+    glm::dvec3 weight{1};
+    double coverage = 0;
+    std::uint32_t generation = 0, kind = 0;
+    Media media;
+  };
+  struct Work {
+    Radiance sum;
+    std::vector<Pending> rays;
+    ReferenceCounts& counts;
+  };
+
+  void shade(const Pending& ray, const Hit& hit, Work& work) const;
+  void light(const Surface& s, const glm::dvec3& weight, const glm::dvec3& f0, const glm::dvec3& v, Work& work) const;
+  void transmit(const Surface& s, const glm::dvec3& weight, double mirror, double nv, const Pending& parent,
+                Work& work) const;
+  void reflect(const Surface& s, const glm::dvec3& weight, const Pending& parent, Work& work) const;
+  void go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const;
+  [[nodiscard]] glm::dvec3 absorbed(const Pending& ray, const Surface& s, double t) const;
+  [[nodiscard]] glm::dvec3 visibility(const Surface& s, const WorldLight& light, const Arriving& in,
+                                      ReferenceCounts& counts) const;
+  [[nodiscard]] double ior(std::uint32_t material) const;
+
+  const Tracer& tracer_;
+  const Surfaces& surfaces_;
+  std::vector<WorldLight> lights_;
+  glm::dvec3 environment_;
+  ReferenceSettings settings_;
+};
+
+}  // namespace sheaf::reference

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "reference/world.hpp"
+
+#include <string>
+
+#include "core/error.hpp"
+#include "hierarchy/object_hierarchy.hpp"
+
+namespace sheaf::reference {
+namespace {
+
+/// The matrix with its target moved so that `origin` becomes 0.
+glm::dmat4 relative_to(const glm::dvec3& origin, glm::dmat4 matrix) {
+  matrix[3] -= glm::dvec4(origin * matrix[3].w, 0);
+  return matrix;
+}
+
+/// Inverse transpose of the linear part up to a positive factor, by cofactors so that a flattened mesh keeps the
+/// normals that are still defined.
+glm::dmat3 normal_matrix(const glm::dmat3& m) {
+  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return glm::determinant(m) < 0 ? -cofactors : cofactors;
+}
+
+glm::dvec3 morphed(const glm::vec3& rest, std::size_t vertex, const Mesh& mesh, const std::vector<double>& weights,
+                   std::vector<glm::vec3> MorphTarget::*attribute) {
+  glm::dvec3 value(rest);
+  for (std::size_t t = 0; t < mesh.targets.size() && t < weights.size(); ++t) {
+    const auto& deltas = mesh.targets[t].*attribute;
+    if (!deltas.empty()) value += weights[t] * glm::dvec3(deltas[vertex]);
+  }
+  return value;
+}
+
+/// Σ w·J over the vertex' joints. Divided by Σ w in double: the file's floats sum to 1 only roughly, which far from the
+/// origin would move the vertex.
+glm::dmat4 blended(const Mesh& mesh, std::size_t vertex, const std::vector<glm::dmat4>& joints) {
+  glm::dmat4 sum(0);
+  double total = 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const double w = mesh.weights[vertex][k];
+    if (w == 0) continue;
+    sum += w * joints[mesh.joints[vertex][k]];
+    total += w;
+  }
+  return total > 0 ? sum / total : joints[mesh.joints[vertex][0]];
+}
+
+std::vector<glm::dmat4> joint_matrices(const Scene& scene, const Pose& pose, std::uint32_t skin,
+                                       const glm::dvec3& origin) {
+  std::vector<glm::dmat4> joints;
+  for (std::size_t j = 0; j < scene.skins[skin].joints.size(); ++j) {
+    joints.push_back(relative_to(origin, pose.world[scene.skins[skin].joints[j]]) * scene.skins[skin].inverse_bind[j]);
+  }
+  return joints;
+}
+
+/// Fills the vertices; `matrix_of(vertex)` gives each its way into the world.
+template <class MatrixOf>
+void place(WorldInstance& into, const Mesh& mesh, const std::vector<double>& weights, const MatrixOf& matrix_of) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const glm::dmat4& m = matrix_of(v);
+    const glm::dvec3 p = mesh.centre + morphed(mesh.positions[v], v, mesh, weights, &MorphTarget::positions);
+    into.positions.emplace_back(m * glm::dvec4(p, 1));
+    const glm::dvec3 n = morphed(mesh.normals[v], v, mesh, weights, &MorphTarget::normals);
+    into.normals.push_back(normal_matrix(glm::dmat3(m)) * n);
+    if (mesh.tangents.empty()) continue;
+    into.tangents.push_back(glm::dmat3(m) *
+                            morphed(glm::vec3(mesh.tangents[v]), v, mesh, weights, &MorphTarget::tangents));
+  }
+}
+
+void add_triangles(World& world, const Mesh& mesh) {
+  const auto instance = static_cast<std::uint32_t>(world.instances.size() - 1);
+  const WorldInstance& in = world.instances.back();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::uvec3 v = mesh.triangles[t];
+    world.triangles.push_back({{in.positions[v.x], in.positions[v.y], in.positions[v.z]}, instance, in.mesh, t});
+  }
+  if (world.triangles.size() > max_primitives) {
+    throw limit_error("reference", "more than " + std::to_string(max_primitives) + " triangles after instancing");
+  }
+}
+
+void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t index) {
+  const Node& node = scene.nodes[index];
+  static const std::vector<glm::dmat4> once{glm::dmat4(1)};
+  for (const glm::dmat4& instance : node.instances.empty() ? once : node.instances) {
+    for (std::uint32_t m = node.first_mesh; m < node.first_mesh + node.mesh_count; ++m) {
+      const Mesh& mesh = scene.meshes[m];
+      const auto first = static_cast<std::uint32_t>(world.triangles.size());
+      WorldInstance& into = world.instances.emplace_back(WorldInstance{index, m, first, 1, {}, {}, {}});
+      if (node.skin != none && !mesh.joints.empty()) {
+        const auto joints = joint_matrices(scene, pose, node.skin, world.origin);
+        place(into, mesh, pose.morph_weights[index], [&](std::size_t v) { return blended(mesh, v, joints); });
+      } else {
+        const glm::dmat4 matrix = relative_to(world.origin, pose.world[index] * instance);
+        into.side = glm::determinant(glm::dmat3(matrix)) < 0 ? -1 : 1;
+        place(into, mesh, pose.morph_weights[index], [&](std::size_t) -> const glm::dmat4& { return matrix; });
+      }
+      add_triangles(world, mesh);
+    }
+  }
+}
+
+}  // namespace
+
+World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin) {
+  World world;
+  world.origin = origin;
+  for (const std::uint32_t node : scene.order) add_node(world, scene, pose, node);
+  return world;
+}
+
+}  // namespace sheaf::reference
+
+namespace sheaf {
+
+std::vector<ReferenceTriangle> reference_triangles(const Scene& scene, const Pose& pose, const glm::dvec3& origin) {
+  return reference::build_world(scene, pose, origin).triangles;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The scene under a pose, in world space relative to the frame origin: skinned and morphed in double precision.
+#pragma once
+
+#include <vector>
+
+#include "reference/reference.hpp"
+
+namespace sheaf::reference {
+
+struct WorldInstance {  // one mesh of one instance of one node
+  std::uint32_t node, mesh, first_triangle;
+  double side;                                           // sign of the matrix' determinant; 1 where skinned
+  std::vector<glm::dvec3> positions, normals, tangents;  // a vertex; tangents empty where the mesh has none
+};
+
+struct World {
+  glm::dvec3 origin{0};
+  std::vector<WorldInstance> instances;
+  std::vector<ReferenceTriangle> triangles;
+};
+
+[[nodiscard]] World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin);
+
+}  // namespace sheaf::reference
