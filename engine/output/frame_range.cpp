@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <string_view>
+#include <system_error>
 #include <unordered_set>
 
 #include "core/error.hpp"

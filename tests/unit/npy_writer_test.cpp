@@ -86,12 +86,12 @@ TEST_F(NpyWriterTest, ShapeMustFit) {
             "a.npy: the shape does not hold 6 values");
   EXPECT_EQ(error_of(ErrorKind::usage, [&] { write_npy("a.npy", six, {}); }),
             "a.npy: the shape does not hold 6 values");
-  // 2^32 * 2^32 wraps around to 0 in 64 bits.
+  // 2 · (2^63 + 3) is 6 in 64 bits.
   EXPECT_EQ(error_of(ErrorKind::usage,
                      [&] {
-                       write_npy("a.npy", std::vector<float>{}, {1ull << 32, 1ull << 32});
+                       write_npy("a.npy", six, {2, (1ull << 63) + 3});
                      }),
-            "a.npy: the shape does not hold 0 values");
+            "a.npy: the shape does not hold 6 values");
 }
 
 TEST_F(NpyWriterTest, UnwritablePlace) {

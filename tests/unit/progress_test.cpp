@@ -90,10 +90,10 @@ TEST_F(ProgressTest, NoneAndAutoWithoutATerminalShowOnlyMessages) {
 TEST_F(ProgressTest, TimeLeftIsTheMedianOfTheLastFrames) {
   Progress progress(ProgressMode::none, json_, text_);
   EXPECT_EQ(progress.seconds_left(), 0);
-  progress.start(105);
+  progress.start(130);
   EXPECT_EQ(progress.seconds_left(), 0);
-  for (int i = 0; i < 3; ++i) progress.frame_done(i, "", 9000);  // slow beginnings leave the window
-  for (int i = 3; i < 20; ++i) progress.frame_done(i, "", i == 19 ? 100000 : 2000);
+  for (int i = 0; i < 30; ++i) progress.frame_done(i, "", 9000);  // slow beginnings leave the window
+  for (int i = 30; i < 45; ++i) progress.frame_done(i, "", i == 44 ? 100000 : 2000);
   EXPECT_DOUBLE_EQ(progress.seconds_left(), 2.0 * 85);
   progress.start(0);
   EXPECT_EQ(progress.seconds_left(), 0);
