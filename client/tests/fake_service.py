@@ -30,6 +30,8 @@ class FakeJob:
     error: dict[str, Any] | None = None
     name: str = "box.%04d.exr"
     warnings: list[str] = field(default_factory=list)
+    cancel_requested: bool = False
+    slow_to_stop: bool = False
     after_events: str | None = None  # the state once all events have been told
     parts: list[tuple[str, str | None, bytes]] = field(default_factory=list)
 
@@ -49,6 +51,7 @@ class FakeJob:
             "settings": self.settings,
             "error": self.error,
             "warnings": self.warnings,
+            "cancel_requested": self.cancel_requested,
             "created": "2031-02-03T04:05:06Z",
             "expires": None,
         }
@@ -181,9 +184,10 @@ class Handler(BaseHTTPRequestHandler):
 
     def _job(self, job: FakeJob, rest: str, headers: dict[str, str], query: dict[str, str]) -> None:
         if not rest and self.command == "DELETE":
-            if job.state in ("queued", "running"):
-                job.state = "cancelled"
-                self.json(200, job.to_json())
+            if job.state in ("queued", "running") and not job.cancel_requested:
+                job.cancel_requested = True
+                job.state = "running" if job.slow_to_stop else "cancelled"
+                self.json(202, job.to_json())
             else:
                 del self.owner.jobs[job.id]
                 self.send(204, b"", {})

@@ -29,7 +29,7 @@ def run(service: FakeService, exr: bytes, monkeypatch: pytest.MonkeyPatch, pause
     """Runs the command against the service, which renders frames 0 and 1 of everything at once."""
 
     def finish(job: FakeJob) -> None:
-        job.state, job.frames = "done", {0: exr, 1: exr}
+        job.state, job.frames, job.warnings = "done", {0: exr, 1: exr}, ["box.gltf: no light"]
 
     service.new_job = finish
     monkeypatch.setenv("SHEAF_SERVER", service.url)
@@ -100,6 +100,7 @@ def test_json_progress(
     assert events[0] == {"event": "start", "job": "job1"}
     assert {"event": "frame", "frame": 1, "file": str(tmp_path / "out" / "a.1.exr")} in events
     assert {event["done"] for event in events if event["event"] == "progress"} == {2}
+    assert {"event": "warning", "message": "box.gltf: no light"} in events
     assert events[-1] == {"event": "done", "files": 2}
     assert captured.err == ""
 
@@ -111,6 +112,7 @@ def test_bar_and_silence(
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "2/2 frames" in captured.err
+    assert "warning: box.gltf: no light" in captured.err
     assert f"2 files in {tmp_path / 'out'}" in captured.err
     assert run("render", scene, "--out", tmp_path / "out") == 0  # auto, and not a terminal
     captured = capsys.readouterr()

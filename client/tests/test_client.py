@@ -150,7 +150,10 @@ def test_errors_that_are_no_problem_json(client: sheaf.Client, service: FakeServ
     assert (caught.value.type, caught.value.detail) == ("about:blank", "")
 
 
-@pytest.mark.parametrize(("value", "seconds"), [("7", 7.0), ("Thu, 01 Jan 1970 00:00:00 GMT", 0.0), ("soon", None)])
+@pytest.mark.parametrize(
+    ("value", "seconds"),
+    [("7", 7.0), ("Thu, 01 Jan 1970 00:00:00 GMT", 0.0), ("Thu, 01 Jan 1970 00:00:00 -0000", 0.0), ("soon", None)],
+)
 def test_unavailable_says_when_to_come_back(
     service: FakeService, value: str, seconds: float | None, pauses: list[float]
 ) -> None:
@@ -197,7 +200,20 @@ def test_nobody_there_and_silence(pauses: list[float]) -> None:
             client.job("abc")
 
 
-@pytest.mark.parametrize("body", [b"", b"[]", b"<html>", b'{"id": "x"}', b'{"id": 5, "state": "done"}'])
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"",
+        b"[]",
+        b"<html>",
+        b'{"id": "x"}',
+        b'{"id": 5, "state": "done"}',
+        b'{"id": "x", "state": "done", "frames": 5}',
+        b'{"id": "x", "state": "done", "frames": [5]}',
+        b'{"id": "x", "state": "done", "settings": 5}',
+        b'{"id": "x", "state": "done", "progress": {"done": true}}',
+    ],
+)
 def test_answers_of_something_else(body: bytes) -> None:
     transport = httpx.MockTransport(lambda request: httpx.Response(200, content=body))
     with sheaf.Client("http://x", transport=transport) as client, pytest.raises(sheaf.ProtocolError):
@@ -239,6 +255,23 @@ def test_jobs_walks_all_pages(client: sheaf.Client, service: FakeService) -> Non
     assert [job.id for job in client.jobs()] == ["j0", "j1", "j2", "j3", "j4"]
     assert len(service.asked("GET /v1/jobs")) == 3
     assert [job.id for job in client.jobs("failed", page_size=1)] == ["j0", "j2", "j4"]
+
+
+def test_a_text_answer_is_health_too() -> None:
+    with sheaf.Client("http://x", transport=httpx.MockTransport(lambda _: httpx.Response(200, text="ok\n"))) as client:
+        assert client.health() == {"status": "ok"}
+
+
+def test_a_broken_encoding_is_a_broken_answer(client: sheaf.Client, service: FakeService) -> None:
+    service.fault("GET", lambda h: h.send(200, b"not gzip", {"Content-Encoding": "gzip"}), times=4)
+    with pytest.raises(sheaf.TransportError, match="encoding"):
+        client.job("abc")
+
+
+def test_a_redirect_to_another_protocol_is_no_way_out(client: sheaf.Client, service: FakeService) -> None:
+    service.fault("GET", lambda h: h.send(302, b"", {"Location": "file:///etc/passwd"}))
+    with pytest.raises(sheaf.ApiError, match="302"):
+        client.job("abc")
 
 
 def test_health(client: sheaf.Client, service: FakeService) -> None:

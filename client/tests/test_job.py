@@ -17,12 +17,12 @@ import sheaf
 
 FRAME_EVENTS: list[tuple[str, dict[str, Any]]] = [
     ("state", {"state": "running"}),
-    ("frame", {"frame": 3, "state": "done"}),
-    ("progress", {"done": 1, "total": 2, "fraction": 0.5, "eta_s": 4.0}),
-    ("frame", {"frame": 4, "state": "done"}),
+    ("start", {"frames": 2}),
+    ("frame", {"frame": 3, "done": 1, "total": 2, "eta_s": 4.0, "wall_ms": 5.0}),
+    ("frame", {"frame": 4, "done": 2, "total": 2, "eta_s": 0, "wall_ms": 5.0}),
 ]
 FAILURE = {"code": "bad-scene", "message": "box.glb: meshes[0]: no", "exit_code": 3, "signal": None}
-DONE = ("state", {"state": "done", "progress": {"done": 2, "total": 2, "fraction": 1.0, "eta_s": 0}})
+DONE = ("state", {"state": "done"})
 
 
 @pytest.fixture
@@ -191,9 +191,28 @@ def test_stats_log_cancel_delete(client: sheaf.Client, service: FakeService, run
         job.stats()
 
 
-def test_delete_stops_what_runs(client: sheaf.Client, service: FakeService, running: FakeJob) -> None:
+@pytest.mark.parametrize("slow", [False, True])
+def test_delete_stops_what_runs(client: sheaf.Client, service: FakeService, running: FakeJob, slow: bool) -> None:
+    running.slow_to_stop = slow
     client.job("abc").delete()
     assert service.jobs == {}
+
+
+def test_cancelling_twice_or_with_a_lost_answer_never_removes(
+    client: sheaf.Client, service: FakeService, running: FakeJob
+) -> None:
+    def cancel_and_hang_up(handler: Handler) -> None:
+        running.cancel_requested = True
+        hang_up(handler)
+
+    running.slow_to_stop = True
+    service.fault("DELETE", hang_up)
+    service.fault("DELETE", cancel_and_hang_up)
+    job = client.job("abc")
+    assert job.cancel().info.cancel_requested
+    assert job.cancel().state == "running"
+    assert len(service.asked("DELETE")) == 2
+    assert list(service.jobs) == ["abc"]
 
 
 def test_download(client: sheaf.Client, done_job: FakeJob, tmp_path: Path, exr: bytes) -> None:

@@ -54,13 +54,13 @@ MEMBERS = {
     sheaf.Job: "cancel delete download events frame frames id info log preview progress refresh state stats wait",
     sheaf.Frame: "attributes layers number rgba size",
     sheaf.CameraPath: "fov_axis fps from_dict interpolation keys load look_at_keys loop save to_dict turntable",
-    sheaf.JobInfo: "created error expires frames id is_over progress raw rendered settings state warnings",
+    sheaf.JobInfo: "cancel_requested created error expires frames id is_over progress rendered settings state warnings",
     sheaf.Progress: "done eta_s fraction state total",
     sheaf.Event: "data ends_job id type",
 }
 
-SETTINGS = """animation aov camera_node compression cutoff depth device fps frames memory name opaque preview
-primary size sort spp strategy"""
+SETTINGS = """animation aov camera_node compression cutoff count depth device environment fps frames memory name opaque
+preview primary scene_name size sort spp strategy"""
 
 
 def test_exported_names() -> None:

@@ -110,6 +110,18 @@ def test_binary_scenes_may_have_files_beside_them_too(tmp_path: Path) -> None:
     assert list(files.beside) == ["a.png"]
 
 
+def test_odd_lists_are_left_to_the_renderer(tmp_path: Path) -> None:
+    assert collect_scene(gltf(tmp_path, buffers=5, images=[7, {"uri": None}])).beside == {}
+
+
+def test_a_file_that_goes_away_before_it_is_sent(tmp_path: Path) -> None:
+    (tmp_path / "a.bin").touch()
+    files = collect_scene(gltf(tmp_path, buffers=[{"uri": "a.bin"}]))
+    (tmp_path / "a.bin").unlink()
+    with pytest.raises(sheaf.SceneError, match=r"a\.bin: No such file"):
+        files.parts()[1].open()
+
+
 def test_bytes_are_told_apart(tmp_path: Path) -> None:
     assert collect_scene(glb()).name == "scene.glb"
     assert collect_scene(b'{"asset": {"version": "2.0"}}').name == "scene.gltf"

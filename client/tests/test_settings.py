@@ -49,5 +49,10 @@ def test_numbers_given_as_text_travel_as_numbers() -> None:
     wire = wire_settings({"fps": "24000/1001", "spp": "adaptive:0.01"})
     assert wire == {"fps": "24000/1001", "spp": "adaptive:0.01"}
     assert wire_settings({"fps": "29.97", "size": "64x36", "camera_node": None}) == {"fps": 29.97, "size": "64x36"}
+    assert wire_settings({"environment": (0.5, 1, 2), "aov": ["Z"]}) == {"environment": "0.5,1,2", "aov": "Z"}
+    with pytest.raises(ValueError, match="environment must be finite"):
+        wire_settings({"environment": (0.5, 1, float("inf"))})
+    with pytest.raises(TypeError, match="aov cannot be a int"):
+        wire_settings({"aov": 5})
     with pytest.raises(ValueError, match="fps must be finite"):
         wire_settings({"fps": "nan"})

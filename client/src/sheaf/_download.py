@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Literal
 
 from . import _calls
-from ._errors import SheafError
 from ._files import file_sha256, whole_file
 from ._models import FrameState, JobInfo
 from ._names import FrameNames
@@ -59,18 +58,7 @@ def fetch(session: Session, job_id: str, wanted: Wanted) -> None:
     Raises:
         TransportError: it did not come whole, again and again.
     """
-    failures = 0
-    while True:
-        try:
-            _fetch_once(session, job_id, wanted)
-        except SheafError as error:
-            failures += 1
-            pause = session.retry.pause(failures, error)
-            if pause is None:
-                raise
-            session.sleep(pause)
-        else:
-            return
+    session.patiently(lambda: _fetch_once(session, job_id, wanted))
 
 
 def _fetch_once(session: Session, job_id: str, wanted: Wanted) -> None:

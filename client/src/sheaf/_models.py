@@ -64,6 +64,7 @@ class JobInfo:
         frames: each frame's state, in rendering order.
         settings: the settings in force, defaults resolved.
         error: `code` and `message` where the job failed.
+        cancel_requested: whether it will be cancelled once the renderer has stopped.
         warnings: what the renderer warned of.
         created: when it was submitted, RFC 3339.
         expires: when the service will remove it; None where it will not.
@@ -76,6 +77,7 @@ class JobInfo:
     frames: Sequence[FrameState] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     error: Mapping[str, Any] | None = None
+    cancel_requested: bool = False
     warnings: Sequence[str] = ()
     created: str | None = None
     expires: str | None = None
@@ -118,6 +120,7 @@ class JobInfo:
             frames=frames,
             settings=_mapping(body, "settings"),
             error=_mapping(body, "error") or None,
+            cancel_requested=body.get("cancel_requested") is True,
             warnings=[str(warning) for warning in _list(body, "warnings")],
             created=_optional(body, "created", str, "job"),
             expires=_optional(body, "expires", str, "job"),

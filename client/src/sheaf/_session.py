@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import httpx
@@ -48,10 +48,14 @@ class Session:
 
     def call(self, call: Call[T]) -> T:
         """Sends and reads the answer, again where the policy says so."""
+        return self.patiently(lambda: self.once(call))
+
+    def patiently(self, action: Callable[[], T]) -> T:
+        """Does something, again where it fails and the policy says so."""
         failures = 0
         while True:
             try:
-                return self.once(call)
+                return action()
             except SheafError as error:
                 failures += 1
                 pause = self.retry.pause(failures, error)

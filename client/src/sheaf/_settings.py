@@ -11,7 +11,7 @@ from typing import Any, Literal, TypedDict
 from ._frames import frame_list
 
 Strategy = Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"]
-Sort = Literal["auto", "on", "off"]
+Switch = Literal["auto", "on", "off"]
 Primary = Literal["raster", "trace"]
 Compression = Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
 
@@ -28,6 +28,8 @@ class RenderSettings(TypedDict, total=False):
     """Frames a second, or a fraction such as "24000/1001"."""
     animation: str | int | None
     """The animation's name or index, or "all"."""
+    scene_name: str | int | None
+    """Which of the file's scenes, by name or index; the file's own default where not given."""
     camera_node: str | int | None
     """A camera of the scene by node name or index; not together with a camera path."""
     size: str | tuple[int, int] | None
@@ -40,7 +42,7 @@ class RenderSettings(TypedDict, total=False):
     """Rays whose weight is below this are not followed."""
     strategy: Strategy | None
     """How rays find triangles; never changes a pixel."""
-    sort: Sort | None
+    sort: Switch | None
     """Whether rays are sorted by hash."""
     primary: Primary | None
     """How primary hits are found."""
@@ -52,6 +54,10 @@ class RenderSettings(TypedDict, total=False):
     """Device memory budget, MiB."""
     device: str | int | None
     """Device by name or index, where the service lets callers choose."""
+    environment: str | tuple[float, float, float] | None
+    """Radiance that rays see where they hit nothing: `"R,G,B"` or three numbers."""
+    count: Switch | None
+    """Whether intersection tests are counted."""
     opaque: bool | None
     """Every surface opaque and two-sided."""
     preview: bool | None
@@ -84,15 +90,19 @@ def _wire(name: str, value: Any) -> Wire:
         return frame_list(value)
     if name == "size" and not isinstance(value, str):
         return _size(value)
-    if name == "aov" and not isinstance(value, str):
-        return ",".join(str(layer) for layer in value)
+    if name in ("aov", "environment") and isinstance(value, Iterable) and not isinstance(value, str):
+        return ",".join(str(_finite(name, item)) for item in value)
     if name in ("fps", "spp") and isinstance(value, str):
         value = _number(value)
+    if isinstance(value, str) or (isinstance(value, (int, float)) and name not in ("aov", "environment")):
+        return _finite(name, value)
+    raise TypeError(f"{name} cannot be a {type(value).__name__}")
+
+
+def _finite(name: str, value: Wire) -> Wire:
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"{name} must be finite, not {value}")
-    if isinstance(value, (str, int, float)):
-        return value
-    raise TypeError(f"{name} cannot be a {type(value).__name__}")
+    return value
 
 
 def _number(text: str) -> Wire:

@@ -86,4 +86,5 @@ def run_download(arguments: argparse.Namespace, report: Report) -> None:
 def _line(job: Job) -> str:
     error = job.info.error
     reason = f"  {error.get('message', '')}" if error else ""
-    return f"{job.id}  {job.state:9}  {words(job.progress)}{reason}"
+    state = "stopping" if job.info.cancel_requested and not job.info.is_over else job.state
+    return f"{job.id}  {state:9}  {words(job.progress)}{reason}"

@@ -45,6 +45,11 @@ class Report:
         self._files += 1
         self._emit(event="frame", frame=frame, file=str(path))
 
+    def warning(self, message: str) -> None:
+        """The renderer warned."""
+        self._emit(event="warning", message=message)
+        self.note(f"sheaf-client: warning: {message}")
+
     def finish(self, text: str) -> None:
         """The command is done."""
         self.note(text)
