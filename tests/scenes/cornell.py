@@ -32,20 +32,20 @@ def build() -> bytes:
     for name, (corner, u, v, material) in walls.items():
         wall = grid(corner, u, v, (CELLS, CELLS))
         nodes.append(glb.node(name, mesh=glb.mesh(glb.primitive(wall, material), name)))
-    rim = grid((-0.3, 1.995, -0.3), (0.6, 0, 0), (0, 0, 0.6), (2, 2))
+    rim = grid((-0.3, 1.995, 0.15), (0.6, 0, 0), (0, 0, 0.6), (2, 2))
     nodes.append(glb.node("lamp", mesh=glb.mesh(glb.primitive(rim, lamp), "lamp")))
     blocks = {  # size, place of the foot's centre, turn about +Y in degrees
-        "mirror block": ((0.58, 1.2, 0.58), (-0.36, 0.002, -0.36), 18, mirror),
+        "mirror block": ((0.58, 1.2, 0.58), (-0.36, 0.002, -0.36), 38, mirror),
         "glass block": ((0.56, 0.6, 0.56), (0.4, 0.002, 0.34), -17, glass),
-        "plinth": ((0.3, 0.25, 0.3), (-0.62, 0.002, 0.55), 0, blue),
+        "plinth": ((0.3, 0.25, 0.3), (-0.62, 0.002, 0.2), 0, blue),
     }
     for name, (size, foot, angle, material) in blocks.items():
         shape = box(size, (0, size[1] / 2, 0), cells=4)
         mesh = glb.mesh(glb.primitive(shape, material), name)
         nodes.append(glb.node(name, foot, turn((0, 1, 0), angle), mesh=mesh))
     ball = glb.mesh(glb.primitive(sphere(8), white), "ball")
-    nodes.append(glb.node("ball", (-0.62, 0.415, 0.55), scale=(0.16,) * 3, mesh=ball))
-    nodes.append(glb.light("point", "point", 14, (1, 0.96, 0.85), {"translation": (0, 1.85, 0)}))
+    nodes.append(glb.node("ball", (-0.62, 0.415, 0.2), scale=(0.16,) * 3, mesh=ball))
+    nodes.append(glb.light("point", "point", 8, (1, 0.96, 0.85), {"translation": (0, 1.8, 0.45)}))
     lens = glb.perspective("camera", np.radians(39.3), 1, 0.1, 20)
     nodes.append(glb.node("camera", (0, 1, 3.8), look_at((0, 1, 3.8), (0, 1, 0)), camera=lens))
     glb.scene(nodes, "cornell")

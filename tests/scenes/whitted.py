@@ -48,9 +48,9 @@ def floor(glb: Glb) -> int:
 
 
 def sky(glb: Glb) -> int:
-    """An unlit ring of a dome, light at the horizon and black where it ends, 55° up: the directional light
-    comes in above it."""
-    rings, segments = np.radians([-2, 3, 8, 15, 24, 34, 45, 55]), 32
+    """An unlit ring of a dome, light at the horizon and black where it ends, 45° up: the directional light
+    comes in above it. What the ring shades lies behind the camera."""
+    rings, segments = np.radians([-2, 2, 6, 12, 19, 27, 36, 45]), 32
     colours = np.array([(.55, .72, .95), (.50, .68, .94), (.40, .60, .92), (.26, .46, .82), (.14, .29, .62),
                         (.055, .13, .34), (.015, .04, .12), (0, 0, 0)])
     angles = np.arange(segments) * 2 * np.pi / segments
@@ -198,9 +198,9 @@ def build() -> bytes:
                            mesh=glb.mesh(glass_primitive | {"material": mirror}, "mirror sphere"))
     arm, bones = tentacle(glb)
     blob = flower(glb)
-    key = glb.light("key", "point", 190, (1, 0.96, 0.88), {"translation": (-3.2, 5.2, 3.4)})
-    sun = look_rotation((0, 0, 0), (-0.38, -0.9, -0.22), (0, 0, 1))  # 64° above the horizon: over the sky's rim
-    fill = glb.light("fill", "directional", 0.9, (0.75, 0.85, 1), {"rotation": quaternion(sun)})
+    key = glb.light("key", "point", 130, (1, 0.96, 0.88), {"translation": (-3.2, 5.2, 3.4)})
+    sun = look_rotation((0, 0, 0), (0, -0.9, -0.44), (0, 0, 1))  # over the sky's rim, from behind the camera
+    fill = glb.light("fill", "directional", 1.7, (0.85, 0.92, 1), {"rotation": quaternion(sun)})
     lens = glb.perspective("camera", np.radians(39), 16 / 9, 0.05, 200)
     eye = glb.node("camera", camera=lens)
     moves, start = camera_channels(eye)
