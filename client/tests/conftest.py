@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import pytest
 from fake_service import FakeJob, FakeService
 
 import sheaf
+from sheaf.cli import main
 
 
 @pytest.fixture
@@ -46,6 +47,33 @@ def exr(tmp_path: Path) -> bytes:
 def done_job(service: FakeService, exr: bytes) -> FakeJob:
     """Frames 3 and 4 rendered."""
     return service.add(FakeJob("abc", frames={3: exr, 4: exr}))
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "box.gltf"
+    path.write_text('{"asset": {"version": "2.0"}}')
+    return path
+
+
+@pytest.fixture
+def run(service: FakeService, exr: bytes, monkeypatch: pytest.MonkeyPatch, pauses: list[float]) -> Callable[..., int]:
+    """Runs the command against the service, which renders frames 0 and 1 of everything at once."""
+
+    def finish(job: FakeJob) -> None:
+        job.state, job.frames, job.warnings = "done", {0: exr, 1: exr}, ["box.gltf: no light"]
+
+    service.new_job = finish
+    monkeypatch.setenv("SHEAF_SERVER", service.url)
+    monkeypatch.delenv("SHEAF_TOKEN", raising=False)
+
+    def command(*arguments: str | Path) -> int:
+        try:
+            return main([str(argument) for argument in arguments])
+        except SystemExit as end:  # argparse's own
+            return int(end.code or 0)
+
+    return command
 
 
 def colour(height: int, width: int) -> dict[str, npt.NDArray[Any]]:

@@ -111,7 +111,7 @@ class Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         self._serve()
 
-    do_POST = do_DELETE = do_HEAD = do_GET  # noqa: N815
+    do_POST = do_DELETE = do_GET  # noqa: N815
 
     def _serve(self) -> None:
         owner = self.owner
@@ -210,11 +210,17 @@ class Handler(BaseHTTPRequestHandler):
         else:
             data = job.frames[number] if kind == "exr" else b"\x89PNG of %d" % number
             etag = self.owner.etag(data)
+            if etag and etag in self.headers.get("If-None-Match", "").split(", "):
+                self.send(304, b"", {"ETag": etag})
+                return
             self.send(200, data, {"Content-Type": "image/x-exr"} | ({"ETag": etag} if etag else {}))
 
     def _events(self, job: FakeJob, headers: dict[str, str], query: dict[str, str]) -> None:
         after = int(headers.get("last-event-id") or query.get("after") or 0)
         told = [(number, *event) for number, event in enumerate(job.events, start=1) if number > after]
+        if "wait" not in query and not told and job.state in ("done", "failed", "cancelled"):
+            self.send(204, b"", {})
+            return
         if "wait" in query:
             self._finish(job)
             entries = [{"id": str(number), "event": kind, "data": data} for number, kind, data in told]
@@ -254,8 +260,7 @@ class Handler(BaseHTTPRequestHandler):
             self.send_header(name, value)
         self.send_header("Content-Length", str(len(body) if announced is None else announced))
         self.end_headers()
-        if self.command != "HEAD":
-            self.wfile.write(body)
+        self.wfile.write(body)
         if announced is not None:
             self.close_connection = True
 

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Watching, frames and downloads over real HTTP."""
+"""Watching, frames, cancelling over real HTTP."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import Any
 
-import httpx
 import numpy as np
 import pytest
 from conftest import colour
-from fake_service import FakeJob, FakeService, Handler, cut_short, hang_up, problem, sha256
+from fake_service import FakeJob, FakeService, Handler, hang_up
 
 import sheaf
 
@@ -215,140 +212,6 @@ def test_cancelling_twice_or_with_a_lost_answer_never_removes(
     assert list(service.jobs) == ["abc"]
 
 
-def test_download(client: sheaf.Client, done_job: FakeJob, tmp_path: Path, exr: bytes) -> None:
-    told: list[tuple[int, Path]] = []
-    out = tmp_path / "a" / "b"
-    paths = client.job("abc").download(
-        out, previews=True, name="box.####.exr", on_file=lambda number, path: told.append((number, path))
-    )
-    assert [path.name for path in paths] == ["box.0003.exr", "box.0003.png", "box.0004.exr", "box.0004.png"]
-    assert [path for _, path in told] == paths
-    assert paths[0].read_bytes() == exr
-    assert paths[3].read_bytes() == b"\x89PNG of 4"
-    assert sorted(out.iterdir()) == paths  # and nothing else
-
-
-def test_download_leaves_whole_files_alone(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path, exr: bytes
-) -> None:
-    job = client.job("abc")
-    first, second = job.download(tmp_path)
-    second.write_bytes(exr[:-1])
-    service.requests.clear()
-    assert job.download(tmp_path) == [first, second]
-    assert [request[1] for request in service.asked("GET .*exr")] == ["/v1/jobs/abc/frames/4.exr"]
-    assert second.read_bytes() == exr
-    service.requests.clear()
-    job.download(tmp_path, overwrite=True, numbers=[3])
-    assert len(service.asked("GET .*exr")) == 1
-
-
-def test_download_believes_checksums_only(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path, exr: bytes
-) -> None:
-    (path,) = client.job("abc").download(tmp_path, numbers=[3])
-    path.write_bytes(b"\0" * len(exr))  # as long, but another
-    client.job("abc").download(tmp_path, numbers=[3])
-    assert path.read_bytes() == exr
-    path.unlink()
-    service.fault("GET .*3.exr", lambda h: h.send(200, b"\0" * len(exr), {}), times=10)
-    with pytest.raises(sheaf.TransportError, match="checksum"):
-        client.job("abc").download(tmp_path, numbers=[3])
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_previews_are_compared_by_their_etag(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path
-) -> None:
-    service.etag = lambda data: f'"{sha256(data)}"'
-    _, preview = client.job("abc").download(tmp_path, numbers=[3], previews=True)
-    preview.write_bytes(b"\0" * preview.stat().st_size)
-    client.job("abc").download(tmp_path, numbers=[3], previews=True)
-    assert preview.read_bytes() == b"\x89PNG of 3"
-    assert len(service.asked("GET .*png")) == 2
-    client.job("abc").download(tmp_path, numbers=[3], previews=True)
-    assert len(service.asked("GET .*png")) == 2
-    service.etag = lambda data: f'"{sha256(b"other")}"'
-    with pytest.raises(sheaf.TransportError, match="checksum"):
-        client.job("abc").download(tmp_path, numbers=[3], previews=True, overwrite=True)
-
-
-@pytest.mark.parametrize("name", ["../%d.exr", "/tmp/%d.exr", "a\\%d.exr", ".%d.exr", "%d.sh", "C:%d.exr", "\n%d.exr"])
-def test_the_services_names_cannot_leave_the_folder(
-    client: sheaf.Client, done_job: FakeJob, tmp_path: Path, name: str
-) -> None:
-    done_job.name = name
-    out = tmp_path / "out"
-    assert client.job("abc").download(out, numbers=[3]) == [out / "frame.0003.exr"]
-    assert list(tmp_path.iterdir()) == [out]
-
-
-def test_a_truncated_download_is_fetched_again(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path, exr: bytes
-) -> None:
-    service.fault("GET .*3.exr", cut_short(exr), times=2)
-    (path,) = client.job("abc").download(tmp_path, numbers=[3])
-    assert path.read_bytes() == exr
-    assert list(tmp_path.iterdir()) == [path]
-    service.fault("GET .*3.exr", cut_short(exr))
-    assert client.job("abc").frame(3).size == (6, 4)
-
-
-def test_a_download_that_never_gets_whole_leaves_no_file(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path, exr: bytes
-) -> None:
-    service.fault("GET .*4.exr", cut_short(exr), times=10)
-    with pytest.raises(sheaf.TransportError):
-        client.job("abc").download(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["box.0003.exr"]
-
-
-def test_a_transport_that_does_not_count_bytes_is_counted(tmp_path: Path, exr: bytes, pauses: list[float]) -> None:
-    def answer(request: httpx.Request) -> httpx.Response:
-        if not request.url.path.endswith(".exr"):
-            return httpx.Response(200, json={"id": "abc", "state": "done"})
-        return httpx.Response(200, stream=httpx.ByteStream(exr[:100]), headers={"Content-Length": str(len(exr))})
-
-    with sheaf.Client("http://x", transport=httpx.MockTransport(answer)) as client:
-        job = client.job("abc")
-        with pytest.raises(sheaf.TransportError, match=f"100 of {len(exr)} bytes"):
-            job.download(tmp_path, numbers=[1])
-        with pytest.raises(sheaf.TransportError, match="100 of"):
-            job.frame(1)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_download_errors_are_clear(
-    client: sheaf.Client, service: FakeService, done_job: FakeJob, tmp_path: Path
-) -> None:
-    job = client.job("abc")
-    for name in ("frame.exr", "a/####.exr", "##.##.exr", "####.png", "\n#.exr"):
-        with pytest.raises(ValueError, match="name"):
-            job.download(tmp_path, name=name)
-    with pytest.raises(sheaf.NotFound):
-        job.download(tmp_path, numbers=[9])
-    service.fault("GET .*3.exr", problem(410, "The job was removed"))
-    with pytest.raises(sheaf.NotFound, match="410 The job was removed"):
-        job.download(tmp_path, numbers=[3])
-    (tmp_path / "file").touch()
-    with pytest.raises(OSError, match="file"):
-        job.download(tmp_path / "file")
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
-
-
-def test_downloaded_files_have_the_users_permissions(client: sheaf.Client, done_job: FakeJob, tmp_path: Path) -> None:
-    mask = os.umask(0o027)
-    try:
-        (path,) = client.job("abc").download(tmp_path, numbers=[3])
-    finally:
-        os.umask(mask)
-    assert path.stat().st_mode & 0o777 == 0o640
-
-
-def test_numbers_in_names() -> None:
-    from sheaf._names import FrameNames, default_pattern
-
-    names = FrameNames("a.##.b.exr")
-    assert [names.frame(number) for number in (7, 123, -5)] == ["a.07.b.exr", "a.123.b.exr", "a.-05.b.exr"]
-    assert default_pattern("dir/box.glb") == "box.####.exr"
-    assert default_pattern("a#b\n.glb") == "a_b_.####.exr"
+def test_events_after_the_last_one_are_none(client: sheaf.Client, running: FakeJob) -> None:
+    running.state = "done"
+    assert list(client.job("abc").events(after="5")) == []

@@ -15,7 +15,6 @@ import httpx
 
 from ._camera import CameraPath
 from ._errors import ProtocolError, SceneError
-from ._files import is_same
 from ._http import Call, Part, json_object, whole_body
 from ._models import EventPage, JobInfo, JobPage
 from ._scene import collect_scene
@@ -87,15 +86,13 @@ def poll(job_id: str, after: str | None, seconds: float) -> Call[EventPage]:
     )
 
 
-def frame(job_id: str, number: int, kind: Literal["exr", "png"]) -> Call[bytes]:
-    """`GET /v1/jobs/{id}/frames/{n}.exr` or `.png`."""
-    return Call("GET", _path(job_id, "frames", f"{number}.{kind}"), whole_body, headers=_AS_THEY_ARE)
-
-
-def same_frame(job_id: str, number: int, kind: Literal["exr", "png"], target: Path) -> Call[bool]:
-    """`HEAD` of a frame: whether the file is already there, whole and the same."""
-    path = _path(job_id, "frames", f"{number}.{kind}")
-    return Call("HEAD", path, lambda response: is_same(target, response), headers=_AS_THEY_ARE)
+def frame(job_id: str, number: int, kind: Literal["exr", "png"], have: str | None = None) -> Call[bytes]:
+    """`GET /v1/jobs/{id}/frames/{n}.exr` or `.png`; `have`, the SHA-256 of a file that is there, allows a 304."""
+    headers = dict(_AS_THEY_ARE)
+    if have is not None:
+        headers["if-none-match"] = f'"{have}", "{have[:32]}"'  # the service's tags are the checksum, or its first half
+    accept = frozenset((304,) if have is not None else ())
+    return Call("GET", _path(job_id, "frames", f"{number}.{kind}"), whole_body, headers=headers, accept=accept)
 
 
 def stats(job_id: str) -> Call[Stats]:

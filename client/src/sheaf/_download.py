@@ -17,21 +17,12 @@ from ._session import Session
 
 @dataclass(frozen=True)
 class Wanted:
-    """A file to bring; `bytes` and `sha256` where the service said them beforehand."""
+    """A file to bring; `sha256` where the service told it beforehand."""
 
     number: int
     kind: Literal["exr", "png"]
     path: Path
-    bytes: int | None = None
     sha256: str | None = None
-
-    def is_there(self) -> bool | None:
-        """Whether the file is there already, whole and the same; None where only the service can tell."""
-        if not self.path.is_file():
-            return False
-        if self.bytes is None or self.sha256 is None:
-            return None
-        return self.path.stat().st_size == self.bytes and file_sha256(self.path) == self.sha256
 
 
 def plan(info: JobInfo, folder: Path, numbers: Iterable[int] | None, name: str | None, previews: bool) -> list[Wanted]:
@@ -46,27 +37,32 @@ def plan(info: JobInfo, folder: Path, numbers: Iterable[int] | None, name: str |
     for number in info.rendered if numbers is None else numbers:
         frame = known.get(number, FrameState(number, "unknown"))
         path = folder / (names.frame(number) if names else _service_name(frame))
-        wanted.append(Wanted(number, "exr", path, frame.bytes, frame.sha256))
+        wanted.append(Wanted(number, "exr", path, frame.sha256))
         if previews:
             wanted.append(Wanted(number, "png", path.with_suffix(".png")))
     return wanted
 
 
-def fetch(session: Session, job_id: str, wanted: Wanted) -> None:
-    """Brings one file, again where the session's policy says so.
+def fetch(session: Session, job_id: str, wanted: Wanted, overwrite: bool) -> None:
+    """Brings one file, again where the session's policy says so; leaves it alone where it is there and the same.
 
     Raises:
         TransportError: it did not come whole, again and again.
     """
-    session.patiently(lambda: _fetch_once(session, job_id, wanted))
+    have = file_sha256(wanted.path) if wanted.path.is_file() and not overwrite else None
+    if have is None or have != wanted.sha256:
+        session.patiently(lambda: _fetch_once(session, job_id, wanted, have))
 
 
-def _fetch_once(session: Session, job_id: str, wanted: Wanted) -> None:
-    call = _calls.frame(job_id, wanted.number, wanted.kind)
-    with whole_file(wanted.path) as file, session.stream(call) as response:
-        for block in response.iter_bytes(1 << 20):
-            file.write(block)
-        file.finish(response, wanted.sha256)
+def _fetch_once(session: Session, job_id: str, wanted: Wanted, have: str | None) -> None:
+    call = _calls.frame(job_id, wanted.number, wanted.kind, have)
+    with session.stream(call) as response:
+        if response.status_code == 304:
+            return
+        with whole_file(wanted.path) as file:
+            for block in response.iter_bytes(1 << 20):
+                file.write(block)
+            file.finish(response, wanted.sha256)
 
 
 def _service_name(frame: FrameState) -> str:

@@ -80,15 +80,6 @@ def sha256_of(response: httpx.Response) -> str | None:
     return match.group(1) if match else None
 
 
-def is_same(target: Path, response: httpx.Response) -> bool:
-    """Whether a file already holds what the answer to a HEAD request describes."""
-    announced = response.headers.get("content-length", "")
-    if not announced.isdigit() or not target.is_file() or target.stat().st_size != int(announced):
-        return False
-    digest = sha256_of(response)
-    return digest is None or file_sha256(target) == digest
-
-
 def file_sha256(path: Path) -> str:
     """The SHA-256 of a file, in hexadecimal."""
     digest = hashlib.sha256()

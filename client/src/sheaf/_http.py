@@ -63,6 +63,8 @@ class Call(Generic[T]):
     params: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     parts: Sequence[Part] = ()
+    accept: frozenset[int] = frozenset()
+    """Statuses beside 2xx that are answers, not refusals."""
     read_timeout: float | None = None
     """Seconds of silence to bear, where other than the client's."""
 
@@ -138,6 +140,11 @@ def translated(what: str) -> Iterator[None]:
         raise TransportError(f"{what}: {str(error) or type(error).__name__}") from error
     except httpx.DecodingError as error:
         raise TransportError(f"{what}: the answer's encoding is broken ({error})") from error
+
+
+def is_answer(call: Call[Any], response: httpx.Response) -> bool:
+    """Whether the service did what it was asked to."""
+    return response.is_success or response.status_code in call.accept
 
 
 def json_object(response: httpx.Response) -> dict[str, Any]:

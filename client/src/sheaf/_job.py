@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 
 from . import _calls
-from ._download import Wanted, fetch, plan
+from ._download import fetch, plan
 from ._errors import JobCancelled, JobFailed, NotFound, ProtocolError, SheafError
 from ._exr import Frame, read_exr
 from ._models import Event, JobInfo, JobState, Progress
@@ -224,20 +224,15 @@ class Job:
         files = plan(self.refresh().info, target, numbers, name, previews)
         target.mkdir(parents=True, exist_ok=True)
         for wanted in files:
-            if overwrite or not self._is_there(wanted):
-                fetch(self._session, self.id, wanted)
+            fetch(self._session, self.id, wanted, overwrite)
             if on_file:
                 on_file(wanted.number, wanted.path)
         return [wanted.path for wanted in files]
 
-    def _is_there(self, wanted: Wanted) -> bool:
-        there = wanted.is_there()
-        if there is None:
-            return self._session.call(_calls.same_frame(self.id, wanted.number, wanted.kind, wanted.path))
-        return there
-
     def _listen(self, watch: Watch) -> Generator[Event, None, None]:
         with self._session.stream(_calls.listen(self.id, watch.last)) as response:
+            if response.status_code == 204:  # there is nothing more to tell
+                return
             if not response.headers.get("content-type", "").startswith("text/event-stream"):
                 watch.use_polls()
                 return

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import httpx
 
 from ._errors import SheafError
-from ._http import Call, Part, RetryPolicy, api_error, translated
+from ._http import Call, Part, RetryPolicy, api_error, is_answer, translated
 from ._version import __version__
 
 T = TypeVar("T")
@@ -70,7 +70,7 @@ class Session:
         with translated(f"{call.method} {request.url}"):
             response = self._http.send(request, stream=True)
             try:
-                if not response.is_success:
+                if not is_answer(call, response):
                     response.read()
                     raise api_error(response)
                 yield response
@@ -83,7 +83,7 @@ class Session:
             request = self._request(call, files)
             with translated(f"{call.method} {request.url}"):
                 response = self._http.send(request)
-        if not response.is_success:
+        if not is_answer(call, response):
             raise api_error(response)
         return call.parse(response)
 
