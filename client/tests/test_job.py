@@ -84,6 +84,18 @@ def test_gives_up_when_the_service_stays_away(client: sheaf.Client, service: Fak
     assert len(service.asked("GET .*/events")) == 8
 
 
+def test_a_service_that_restarts_is_waited_for(
+    client: sheaf.Client, service: FakeService, running: FakeJob, pauses: list[float]
+) -> None:
+    """Its streams end well but empty when it stops; then nobody is there for a while."""
+    job = client.job("abc")
+    service.fault("GET .*/events", lambda handler: handler.begin_stream())
+    service.fault("GET", hang_up, times=6)
+    told = list(job.events())
+    assert [event.id for event in told] == ["1", "2", "3", "4", "5"]
+    assert sum(pauses) > 10
+
+
 def test_a_service_that_ends_streams_at_once_is_not_hammered(
     client: sheaf.Client, service: FakeService, running: FakeJob, pauses: list[float]
 ) -> None:

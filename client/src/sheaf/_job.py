@@ -83,13 +83,13 @@ class Job:
                     yield event
                     if event.ends_job:
                         return
-            except SheafError as error:
-                pause = watch.lost(error, streaming=isinstance(step, Listen))
-            else:
                 if not news:
-                    if self.refresh().info.is_over:
+                    self.info = self._session.once(_calls.job(self.id))
+                    if self.info.is_over:
                         return
                     pause = watch.quiet(self._session.now() - begun, streaming=isinstance(step, Listen))
+            except SheafError as error:
+                pause = watch.lost(error, streaming=isinstance(step, Listen))
             self._session.sleep(watch.pause(pause, self._session.now()))
 
     def wait(self, progress: Callable[[Progress], object] | bool | None = None, timeout: float | None = None) -> Job:
