@@ -73,6 +73,19 @@ TEST(Reference, LitPlaneFollowsTheFormula) {
   expect_color(look(b, beam({2, 0, 5}, {0, 0, -1})), ((1 - f) * base + f * v) / pi * (10.0 / 8) * c);
 }
 
+TEST(Reference, HighlightFollowsGgx) {
+  SceneBuilder b;
+  Material m;  // a metal: its base colour is the mirror's, nothing is diffuse
+  m.base_color = {0.5f, 0.5f, 0.5f, 1};
+  m.roughness = 0.5f;
+  b.mesh(SceneBuilder::floor(0, 50), b.material(m));
+  b.point_light({0, 0, 2}, 10);
+  const double nl = std::sqrt(0.5), nh = std::cos(pi / 8), a2 = 0.0625;
+  const double f = 0.5 + 0.5 * std::pow(1 - nh, 5), d = a2 / (pi * std::pow(nh * nh * (a2 - 1) + 1, 2));
+  const double v = 0.5 / (nl + std::sqrt(nl * nl * (1 - a2) + a2));
+  expect_color(look(b, beam({2, 0, 5}, {0, 0, -1})), glm::dvec3(f * d * v * 10 / 8 * nl));
+}
+
 TEST(Reference, SpotAndRangeFade) {
   SceneBuilder b;
   Material m;
