@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// `sheaf`: errors become one line on stderr and an exit code here, and nowhere else.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "cli/commands.hpp"
+#include "core/error.hpp"
+
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+extern "C" void on_signal(int number) { caught_signal = number; }
+
+int report(sheaf::Progress* progress, int code, const std::string& text) {
+  if (progress != nullptr)
+    progress->error(code, text);
+  else
+    std::fprintf(stderr, "sheaf: %s\n", text.c_str());
+  return code;
+}
+
+int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
+  CLI::App app{"Sheaf renders animated glTF scenes by Whitted ray tracing over a coherent ray-space hierarchy", "sheaf"};
+  app.set_version_flag("--version", std::string("sheaf ") + SHEAF_VERSION);
+  app.require_subcommand(1);
+  sheaf::RenderOptions options;
+  auto* render = app.add_subcommand("render", "render frames to OpenEXR");
+  sheaf::add_render_options(*render, options);
+  std::string scene, scene_name;
+  bool inspect_json = false, devices_json = false;
+  auto* inspect = app.add_subcommand("inspect", "what a scene holds, what it needs, what will be left out and why");
+  inspect->add_option("scene", scene, "a .glb or .gltf file")->required();
+  inspect->add_option("--scene-name", scene_name, "which glTF scene: name or index");
+  inspect->add_flag("--json", inspect_json);
+  auto* devices = app.add_subcommand("devices", "Vulkan devices and what each can do");
+  devices->add_flag("--json", devices_json);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return report(nullptr, static_cast<int>(sheaf::ErrorKind::usage), std::string(error.what()) + " (see sheaf --help)");
+  }
+  if (devices->parsed()) return sheaf::run_devices(devices_json);
+  if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, inspect_json);
+  progress = std::make_unique<sheaf::Progress>(sheaf::parse_progress(options.progress));
+  sheaf::resolve_options(options);
+  return sheaf::run_render(options, *progress);
+}
+
+}  // namespace
+
+namespace sheaf {
+int interrupted() { return caught_signal; }
+void watch_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+}  // namespace sheaf
+
+int main(int argc, char** argv) {
+  std::unique_ptr<sheaf::Progress> progress;
+  try {
+    return run(argc, argv, progress);
+  } catch (const sheaf::Error& error) {
+    return report(progress.get(), error.exit_code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return report(progress.get(), static_cast<int>(sheaf::ErrorKind::limit), "out of memory");
+  } catch (const std::exception& error) {
+    return report(progress.get(), static_cast<int>(sheaf::ErrorKind::device), error.what());
+  }
+}

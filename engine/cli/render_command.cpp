@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "cli/commands.hpp"
+#include "core/error.hpp"
+#include "frame/auto_strategy.hpp"
+#include "frame/camera_source.hpp"
+#include "frame/dump_writer.hpp"
+#include "frame/frame_attributes.hpp"
+#include "frame/frame_source.hpp"
+#include "output/atomic_file.hpp"
+#include "output/frame_names.hpp"
+#include "output/frame_range.hpp"
+#include "output/png_writer.hpp"
+#include "scene/gltf_loader.hpp"
+
+namespace sheaf {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point begun) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw io_error(path, error.message());
+  remove_stale_parts(path);
+}
+
+class Job {
+ public:
+  Job(RenderOptions& options, Progress& progress);
+  int run();
+
+ private:
+  void render_frame(std::int64_t number);
+  void write(RenderedFrame& frame, std::int64_t number, double time_s, const CameraView& camera);
+  void save_stats(bool last);
+  [[nodiscard]] bool already_there(std::int64_t number) const;
+  [[nodiscard]] double seconds(std::int64_t number) const { return static_cast<double>(number) / fps_; }
+
+  RenderOptions& options_;
+  Progress& progress_;
+  Scene scene_;
+  std::vector<std::uint32_t> animations_;
+  std::vector<std::int64_t> frames_;
+  CameraSource camera_;
+  FrameNames names_;
+  double fps_;
+  std::unique_ptr<FrameSource> source_;
+  std::unique_ptr<DumpWriter> dump_;
+  RunStats stats_;
+  Clock::time_point saved_ = Clock::now();
+};
+
+Job::Job(RenderOptions& options, Progress& progress)
+    : options_(options),
+      progress_(progress),
+      scene_(load_gltf(options.scene, options.scene_name)),
+      animations_(select_animations(scene_, options.animation)),
+      frames_(parse_frames(options.frames)),
+      camera_(scene_, animations_, options.camera, options.camera_node,
+              static_cast<double>(options.settings.width) / options.settings.height),
+      names_(options.name.empty() ? default_name_pattern(options.scene) : options.name),
+      fps_(options.fps.value_or(camera_.fps().value_or(24.0))) {
+  for (const auto& warning : scene_.warnings) progress_.warning(options.scene + ": " + warning);
+  make_folder(options.out);
+  if (!options.dump.empty()) {
+    make_folder(options.dump);
+    dump_ = std::make_unique<DumpWriter>(options.dump);
+  }
+}
+
+bool Job::already_there(std::int64_t number) const {
+  const auto path = (fs::path(options_.out) / names_.frame(number)).string();
+  return options_.resume && exr_is_whole(path, options_.settings.width, options_.settings.height);
+}
+
+void Job::write(RenderedFrame& frame, std::int64_t number, double time_s, const CameraView& camera) {
+  const auto begun = Clock::now();
+  const auto path = (fs::path(options_.out) / names_.frame(number)).string();
+  const auto attributes = frame_attributes(scene_, options_.settings, camera, number, time_s, fps_, stats_.strategy);
+  if (options_.preview) {
+    const auto preview = (fs::path(options_.out) / names_.preview(number)).string();
+    write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
+  }
+  write_exr(path, frame.layers, attributes, parse_compression(options_.compression));
+  const double spent = milliseconds_since(begun);
+  frame.stats.stages_ms.emplace_back("write", spent);
+  frame.stats.wall_ms += spent;
+  progress_.frame_done(number, path, frame.stats.wall_ms);
+  stats_.frames.push_back(std::move(frame.stats));
+}
+
+void Job::render_frame(std::int64_t number) {
+  FrameRequest request;
+  request.number = number;
+  request.time_s = seconds(number);
+  request.pose = evaluate_pose(scene_, animations_, request.time_s);
+  request.camera = camera_.at(request.pose, request.time_s);
+  RenderedFrame frame = source_->render(request);
+  write(frame, number, request.time_s, request.camera);
+}
+
+void Job::save_stats(bool last) {
+  if (options_.stats.empty() || (!last && milliseconds_since(saved_) < 1000)) return;
+  write_stats(options_.stats, stats_);
+  saved_ = Clock::now();
+}
+
+int Job::run() {
+  watch_signals();
+  std::vector<std::int64_t> wanted;
+  for (const auto number : frames_)
+    if (!already_there(number)) wanted.push_back(number);
+  progress_.start(wanted.size());
+  if (!wanted.empty()) {
+    source_ = make_frame_source(scene_, animations_, camera_, options_, fps_, wanted.front(), stats_);
+    source_->set_dump(dump_.get());
+  }
+  for (const auto number : wanted) {
+    if (interrupted() != 0) break;
+    render_frame(number);
+    save_stats(false);
+  }
+  save_stats(true);
+  if (interrupted() != 0) {
+    progress_.error(128 + interrupted(), "interrupted; whole frames are kept, --resume goes on from here");
+    return 128 + interrupted();
+  }
+  progress_.finish();
+  return 0;
+}
+
+}  // namespace
+
+int run_render(RenderOptions& options, Progress& progress) { return Job(options, progress).run(); }
+
+}  // namespace sheaf

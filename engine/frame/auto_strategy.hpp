@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// `--strategy auto`: the fastest for this scene and device, found by rendering the first frame small with each candidate.
+#pragma once
+
+#include <string>
+
+#include "frame/renderer.hpp"
+
+namespace sheaf {
+
+struct Choice {
+  Strategy strategy = Strategy::bvh;
+  std::string because;
+};
+
+[[nodiscard]] Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
+                                     const RenderSettings& settings, const FrameRequest& first);
+
+}  // namespace sheaf

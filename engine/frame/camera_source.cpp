@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "frame/camera_source.hpp"
+
+#include <charconv>
+
+#include "core/error.hpp"
+#include "frame/scene_bounds.hpp"
+
+namespace sheaf {
+namespace {
+
+std::uint32_t find_camera_node(const Scene& scene, const std::string& selector) {
+  std::vector<std::uint32_t> nodes;
+  for (const auto index : scene.order)
+    if (scene.nodes[index].camera != none) nodes.push_back(index);
+  if (selector.empty()) return nodes.empty() ? none : nodes.front();
+  for (const auto index : nodes)
+    if (scene.nodes[index].name == selector || scene.cameras[scene.nodes[index].camera].name == selector) return index;
+  std::size_t wanted = 0;
+  const char* end = selector.data() + selector.size();
+  if (std::from_chars(selector.data(), end, wanted).ptr == end && wanted < nodes.size()) return nodes[wanted];
+  std::string known;
+  for (const auto index : nodes) known += (known.empty() ? "" : ", ") + scene.nodes[index].name;
+  throw input_error(scene.path, "--camera-node " + selector + ": the scene has " + std::to_string(nodes.size()) +
+                                    " cameras" + (known.empty() ? "" : " (" + known + ")"));
+}
+
+}  // namespace
+
+CameraSource::CameraSource(const Scene& scene, const std::vector<std::uint32_t>& animations, const std::string& path_file,
+                           const std::string& node_selector, double aspect)
+    : scene_(scene), aspect_(aspect) {
+  if (!path_file.empty()) {
+    path_ = load_camera_path(path_file);
+    moves_ = path_->keys.size() > 1;
+    description_ = "path " + path_file;
+    return;
+  }
+  node_ = find_camera_node(scene, node_selector);
+  if (node_ != none) {
+    moves_ = moving_nodes(scene, animations)[node_];
+    description_ = "camera of node " + std::to_string(node_) + " (" + scene.nodes[node_].name + ")";
+    return;
+  }
+  const WorldBox box = animated_bounds(scene, animations);
+  framed_ = framing_view(box.empty() ? glm::dvec3(0) : box.lo, box.empty() ? glm::dvec3(0) : box.hi, aspect);
+  description_ = "the scene framed whole";
+}
+
+CameraView CameraSource::at(const Pose& pose, double time_s) const {
+  if (path_) return evaluate_camera_path(*path_, time_s, aspect_);
+  if (node_ != none) return view_of(scene_.cameras[scene_.nodes[node_].camera], pose.world[node_], aspect_);
+  return framed_;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "frame/features.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "scene/pose.hpp"
+
+namespace sheaf {
+namespace {
+
+// Least roughness a material can show anywhere: its factor times the darkest green of its texture.
+float least_roughness(const Scene& scene, const Material& material) {
+  const auto& use = material.metallic_roughness_texture;
+  if (!use.present() || scene.textures[use.texture].image == none) return material.roughness;
+  const auto& texels = scene.images[scene.textures[use.texture].image].rgba;
+  std::uint8_t least = 255;
+  for (std::size_t i = 1; i < texels.size(); i += 4) least = std::min(least, texels[i]);
+  return material.roughness * static_cast<float>(least) / 255.0F;
+}
+
+void add_material(const Scene& scene, const Material& material, const RenderSettings& settings, Features& features) {
+  const bool lit = !material.unlit;
+  features.unlit |= material.unlit;
+  features.transmissive |= lit && material.transmission > 0 && !settings.opaque;
+  features.volumes |= lit && material.transmission > 0 && material.thickness > 0 && !settings.opaque;
+  features.blended |= material.alpha_mode == AlphaMode::blend && !settings.opaque;
+  features.masked |= material.alpha_mode == AlphaMode::mask && !settings.opaque;
+  features.reflective |= lit && (least_roughness(scene, material) < 0.4F || (material.transmission > 0 && !settings.opaque));
+  features.emissive |= material.emissive != glm::vec3(0);
+  features.normal_mapped |= material.normal_texture.present();
+  for (const auto* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+                          &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture})
+    features.textured |= use->present();
+}
+
+}  // namespace
+
+std::vector<std::string> Features::names() const {
+  std::vector<std::string> result;
+  auto add = [&](bool present, const char* name) {
+    if (present) result.emplace_back(name);
+  };
+  add(default_light, "default light");
+  add(lights > 0 && !default_light, "lights");
+  add(reflective, "reflective");
+  add(transmissive, "transmissive");
+  add(volumes, "volumes");
+  add(blended, "alpha blend");
+  add(masked, "alpha mask");
+  add(textured, "textured");
+  add(normal_mapped, "normal maps");
+  add(unlit, "unlit");
+  add(emissive, "emissive");
+  add(skinned, "skins");
+  add(morphed, "morphs");
+  add(moving_nodes, "moving nodes");
+  add(moving_camera, "moving camera");
+  add(moving_lights, "moving lights");
+  return result;
+}
+
+Features find_features(const Scene& scene, const std::vector<std::uint32_t>& animations, const RenderSettings& settings,
+                       bool camera_moves) {
+  Features features;
+  features.moving_camera = camera_moves;
+  const auto moving = moving_nodes(scene, animations);
+  const auto morphing = morphing_nodes(scene, animations);
+  std::set<std::uint32_t> used;
+  for (const auto index : scene.order) {
+    const Node& node = scene.nodes[index];
+    if (node.light != none) {
+      ++features.lights;
+      features.moving_lights |= moving[index];
+    }
+    if (node.mesh_count == 0) continue;
+    for (std::uint32_t m = 0; m < node.mesh_count; ++m) used.insert(scene.meshes[node.first_mesh + m].material);
+    const bool skinned = node.skin != none;
+    if (skinned)
+      for (const auto joint : scene.skins[node.skin].joints) features.skinned |= moving[joint];
+    features.morphed |= morphing[index];
+    features.moving_nodes |= moving[index] && !skinned;
+  }
+  features.default_light = features.lights == 0;
+  if (features.default_light) {
+    features.lights = 1;
+    features.moving_lights = camera_moves;
+  }
+  for (const auto material : used) add_material(scene, scene.materials[material], settings, features);
+  return features;
+}
+
+Plan make_plan(const Features& features, const RenderSettings& settings, Strategy strategy) {
+  Plan plan;
+  auto leave = [&](const char* stage, const std::string& reason) { plan.left_out.push_back({stage, reason}); };
+  plan.shadows = true;
+  plan.reflections = features.reflective && settings.depth > 0;
+  if (!plan.reflections) leave("reflection", settings.depth == 0 ? "--depth 0" : "no reflective material");
+  plan.refractions = features.translucent() && settings.depth > 0;
+  if (!plan.refractions) leave("refraction", settings.depth == 0 ? "--depth 0" : "no transmissive or blended material");
+  if (!features.volumes) leave("media", "no volume that refracts and absorbs");
+  plan.raster = settings.primary == PrimaryMethod::raster;
+  if (!plan.raster) leave("raster", "--primary trace");
+  plan.deform = features.skinned || features.morphed;
+  if (!plan.deform) leave("deform", "nothing is skinned or morphed over time");
+  if (!features.geometry_moves()) leave("animate", "nothing moves after the first frame");
+  plan.textured_normals = features.normal_mapped;
+  if (!features.normal_mapped) leave("normal maps", "no material has one");
+  if (!features.masked) leave("alpha test", "no alpha-masked material");
+  const bool traced = strategy != Strategy::brute && strategy != Strategy::rayquery && strategy != Strategy::reference;
+  plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid;
+  if (!plan.object_hierarchy) leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
+  plan.ray_hierarchy = strategy == Strategy::hybrid || strategy == Strategy::rsh || strategy == Strategy::crsh;
+  if (!plan.ray_hierarchy) leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
+  plan.sorts = (strategy == Strategy::hybrid || strategy == Strategy::crsh) && settings.sort != SortPolicy::off;
+  if (!plan.sorts)
+    leave("sort", settings.sort == SortPolicy::off && traced ? "--sort off"
+                                                             : std::string("strategy ") + name_of(strategy) + " does not sort");
+  plan.spheres = strategy == Strategy::rsh || strategy == Strategy::crsh;
+  return plan;
+}
+
+}  // namespace sheaf

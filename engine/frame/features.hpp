@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What a scene needs of the engine, found once at load, and the plan that follows: which stages, shader variants and buffers
+// there will be, and for each that is left out, why. A stage left out has no pipeline, no memory and no dispatch.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "frame/settings.hpp"
+#include "output/stats.hpp"
+#include "scene/scene.hpp"
+
+namespace sheaf {
+
+struct Features {
+  std::uint32_t lights = 0;
+  bool default_light = false;  // the scene has none of its own
+  bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
+  bool textured = false, normal_mapped = false, unlit = false, emissive = false;
+  bool skinned = false, morphed = false, moving_nodes = false, moving_camera = false, moving_lights = false;
+  [[nodiscard]] bool translucent() const { return transmissive || blended; }
+  [[nodiscard]] bool geometry_moves() const { return moving_nodes || skinned || morphed; }
+  [[nodiscard]] std::vector<std::string> names() const;
+};
+
+/// `camera_moves`: the camera path has several keys, or the camera's node is animated.
+[[nodiscard]] Features find_features(const Scene& scene, const std::vector<std::uint32_t>& animations,
+                                     const RenderSettings& settings, bool camera_moves);
+
+struct Plan {
+  bool shadows = false, reflections = false, refractions = false;
+  bool raster = true, deform = false, textured_normals = false;
+  bool sorts = false, ray_hierarchy = false, object_hierarchy = false, spheres = false;
+  std::vector<LeftOut> left_out;
+};
+
+[[nodiscard]] Plan make_plan(const Features& features, const RenderSettings& settings, Strategy strategy);
+
+}  // namespace sheaf

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "frame/frame_attributes.hpp"
+
+namespace sheaf {
+namespace {
+
+// World to the image's unit square, y down (see FrameAttributes).
+glm::dmat4 world_to_ndc(const CameraView& camera, double aspect) {
+  const glm::dmat4 to_camera = glm::inverse(camera.to_world);
+  const double y = camera.orthographic ? camera.half_height : camera.tan_half_y, x = y * aspect;
+  glm::dmat4 project(0);  // column-major
+  project[0][0] = 0.5 / x;
+  project[1][1] = -0.5 / y;
+  if (camera.orthographic) {
+    project[3] = glm::dvec4(0.5, 0.5, 0, 1);
+    project[2][2] = -1;
+  } else {
+    project[2] = glm::dvec4(-0.5, -0.5, -1, -1);
+  }
+  return project * to_camera;
+}
+
+}  // namespace
+
+nlohmann::ordered_json settings_json(const RenderSettings& s) {
+  nlohmann::ordered_json json{{"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
+                              {"spp", s.samples},
+                              {"depth", s.depth},
+                              {"cutoff", s.cutoff},
+                              {"primary", s.primary == PrimaryMethod::raster ? "raster" : "trace"},
+                              {"opaque", s.opaque}};
+  if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};
+  return json;
+}
+
+FrameAttributes frame_attributes(const Scene& scene, const RenderSettings& settings, const CameraView& camera,
+                                 std::int64_t frame, double time_s, double fps, const std::string& strategy) {
+  FrameAttributes a;
+  a.world_to_camera = glm::inverse(camera.to_world);
+  a.world_to_ndc = world_to_ndc(camera, static_cast<double>(settings.width) / settings.height);
+  a.fps = fps;
+  a.frame = frame;
+  a.time_s = time_s;
+  a.scene_sha256 = scene.sha256;
+  a.settings_json = settings_json(settings).dump();
+  a.strategy = strategy;
+  a.version = SHEAF_VERSION;
+  return a;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "frame/frame_source.hpp"
+
+#include <algorithm>
+
+#include "frame/auto_strategy.hpp"
+#include "frame/frame_attributes.hpp"
+
+namespace sheaf {
+namespace {
+
+class DeviceFrames final : public FrameSource {
+ public:
+  DeviceFrames(std::unique_ptr<Device> device, const Scene& scene, const Features& features, const RenderSettings& settings,
+               Strategy strategy)
+      : device_(std::move(device)), still_(!features.geometry_moves() && !features.moving_camera && !features.moving_lights),
+        renderer_(*device_, scene, features, settings, strategy) {}
+
+  RenderedFrame render(const FrameRequest& request) override {
+    if (kept_) {  // neither geometry nor camera nor light moves: one picture for all frames
+      RenderedFrame frame = *kept_;
+      frame.stats.frame = request.number;
+      frame.stats.time_s = request.time_s;
+      frame.stats.repeated = true;
+      frame.stats.wall_ms = 0;
+      frame.stats.stages_ms.clear();
+      return frame;
+    }
+    RenderedFrame frame = renderer_.render(request);
+    if (still_) kept_ = frame;
+    return frame;
+  }
+  void set_dump(DumpWriter* dump) override { renderer_.set_dump(dump); }
+  [[nodiscard]] const Renderer& renderer() const { return renderer_; }
+
+ private:
+  std::unique_ptr<Device> device_;
+  bool still_;
+  Renderer renderer_;
+  std::optional<RenderedFrame> kept_;
+};
+
+void describe(const Scene& scene, const Features& features, const RenderSettings& settings, RunStats& stats) {
+  stats.version = SHEAF_VERSION;
+  stats.settings = settings_json(settings);
+  stats.scene.meshes = scene.meshes.size();
+  stats.scene.materials = scene.materials.size();
+  stats.scene.lights = features.default_light ? 0 : features.lights;
+  stats.scene.features = features.names();
+  stats.scene.extensions_ignored = scene.extensions_ignored;
+  stats.scene.warnings = scene.warnings;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::vector<std::uint32_t>& animations,
+                                               const CameraSource& camera, const RenderOptions& options, double fps,
+                                               std::int64_t first_frame, RunStats& stats) {
+  const RenderSettings& settings = options.settings;
+  const Features features = find_features(scene, animations, settings, camera.moves());
+  describe(scene, features, settings, stats);
+  auto device = std::make_unique<Device>(options.device);
+  stats.device_name = device->summary().name;
+  stats.driver = device->summary().driver;
+  Choice choice{settings.strategy, "asked for"};
+  if (settings.strategy == Strategy::automatic) {
+    FrameRequest first;
+    first.number = first_frame;
+    first.time_s = static_cast<double>(first_frame) / fps;
+    first.pose = evaluate_pose(scene, animations, first.time_s);
+    first.camera = camera.at(first.pose, first.time_s);
+    choice = choose_strategy(*device, scene, features, settings, first);
+  }
+  stats.strategy = name_of(choice.strategy);
+  stats.chosen_because = choice.because;
+  auto frames = std::make_unique<DeviceFrames>(std::move(device), scene, features, settings, choice.strategy);
+  stats.left_out = frames->renderer().plan().left_out;
+  stats.scene.triangles = frames->renderer().scene().layout().triangles;
+  stats.scene.instances = frames->renderer().scene().layout().instances.size();
+  return frames;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "frame/ray_lists.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+
+namespace sheaf {
+namespace {
+
+constexpr std::uint64_t list_bytes = gpu::RAY_WORDS * 4 + 8 + 4;  // a slot: ray, hit, place in the order
+constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;            // accumulation, visibility, output and its read-back
+constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;      // keys, kept order, chunks twice, skeleton, digit counts
+constexpr std::uint32_t least_capacity = 1024;
+
+std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
+  std::uint64_t lists = 1;  // primary
+  if (plan.shadows) lists += 1;
+  if (plan.reflections) lists += 1;
+  if (plan.refractions) lists += 2;
+  std::uint64_t bytes = lists * list_bytes + pixel_bytes;
+  if (features.translucent() || features.masked) bytes += 12;
+  if (plan.sorts) bytes += sort_bytes;
+  if (plan.ray_hierarchy) bytes += gpu::RAY_NODE_WORDS * 4 / 3 + 1;
+  return bytes;
+}
+
+RayList make_list(const Device& device, const char* name, std::uint32_t capacity, bool optical_depth) {
+  RayList list;
+  list.rays = Buffer(device, name, std::uint64_t{capacity} * gpu::RAY_WORDS * 4);
+  list.hits = Buffer(device, name, std::uint64_t{capacity} * 8);
+  list.order = Buffer(device, name, std::uint64_t{capacity} * 4);
+  if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{capacity} * 12);
+  return list;
+}
+
+void make_sort_memory(const Device& device, RayMemory& m) {
+  m.keys = Buffer(device, "keys", std::uint64_t{m.capacity} * 4);
+  m.order_kept = Buffer(device, "kept order", std::uint64_t{m.capacity} * 4);
+  m.chunks = Buffer(device, "chunks", std::uint64_t{m.capacity} * 12);
+  m.chunks_alt = Buffer(device, "chunks", std::uint64_t{m.capacity} * 12);
+  m.skeleton = Buffer(device, "skeleton", std::uint64_t{m.capacity} * 4);
+  const std::uint64_t blocks = (std::uint64_t{m.capacity} + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK;
+  m.digits = Buffer(device, "digit counts", blocks * gpu::RADIX * 4);
+}
+
+}  // namespace
+
+RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, const Plan& plan, const Features& features,
+                          std::uint32_t lights) {
+  RayMemory m;
+  const std::uint64_t budget = settings.memory_mib << 20U;
+  const std::uint64_t spare = plan.refractions && plan.reflections ? 2 : 1;  // a hit there makes up to two rays
+  const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
+  const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;
+  std::uint64_t slots = std::min(budget / bytes_per_slot(plan, features), wanted);
+  slots = std::min(slots, device.limits().storage_range / (gpu::RAY_WORDS * 4));
+  slots = std::min<std::uint64_t>(slots, std::uint64_t{1} << 24U);
+  slots = std::max<std::uint64_t>(slots, std::max<std::uint64_t>(least_capacity, per_pixel));
+  m.capacity = static_cast<std::uint32_t>(slots);
+  m.tile_pixels = static_cast<std::uint32_t>(std::max<std::uint64_t>(slots / per_pixel, 1));
+
+  m.shadow = make_list(device, "shadow rays", m.capacity, true);
+  m.reflection[1] = make_list(device, "primary rays", m.capacity, false);
+  if (plan.reflections) m.reflection[0] = make_list(device, "reflection rays", m.capacity, false);
+  if (plan.refractions)
+    for (auto& list : m.refraction) list = make_list(device, "refraction rays", m.capacity, false);
+
+  using Kind = Buffer::Kind;
+  const std::uint64_t pixels = m.tile_pixels;
+  m.counters = Buffer(device, "counters", gpu::COUNT_WORDS * 4);
+  m.counters_readback = Buffer(device, "counters", gpu::COUNT_WORDS * 4, Kind::readback);
+  m.args = Buffer(device, "dispatch arguments", gpu::ARGS_COUNT * 12);
+  m.block_sums = Buffer(device, "block sums", (std::uint64_t{m.capacity} / gpu::SCAN_BLOCK + 2) * 4 * gpu::RADIX);
+  m.accumulation = Buffer(device, "accumulation", pixels * 32);
+  if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8);
+  m.output = Buffer(device, "output", pixels * 16);
+  m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback);
+  m.frame = Buffer(device, "frame", sizeof(gpu::Frame));
+  m.stats = Buffer(device, "stats", gpu::STAT_WORDS * 8);
+  m.stats_readback = Buffer(device, "stats", gpu::STAT_WORDS * 8, Kind::readback);
+  if (settings.layers.tests) m.pixel_tests = Buffer(device, "tests of a pixel", pixels * 4);
+  if (plan.sorts) make_sort_memory(device, m);
+  if (plan.ray_hierarchy) {
+    // Levels 1 and up of arity 4: a third of the rays, and at most one node more a level.
+    const std::uint64_t nodes = std::uint64_t{m.capacity} / 3 + gpu::MAX_LEVELS + 1;
+    m.ray_nodes = Buffer(device, "ray hierarchy", nodes * gpu::RAY_NODE_WORDS * 4);
+    const std::uint64_t bundles = std::uint64_t{m.capacity} / gpu::BUNDLE + 1;
+    m.bundle_flags = Buffer(device, "bundle flags", bundles * 4);
+    m.bundle_list = Buffer(device, "bundle list", bundles * 4 * 2);
+  }
+  return m;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// The frame driver. Reads like the algorithm: animate, objects, then tile by tile raster, generate, trace, shade, resolve.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "frame/device_scene.hpp"
+#include "frame/ray_lists.hpp"
+#include "output/exr_writer.hpp"
+#include "output/stats.hpp"
+#include "stages/animate.hpp"
+#include "stages/compact.hpp"
+#include "stages/generate.hpp"
+#include "stages/objects.hpp"
+#include "stages/raster.hpp"
+#include "stages/resolve.hpp"
+#include "stages/shade.hpp"
+#include "stages/tracer.hpp"
+
+namespace sheaf {
+
+class DumpWriter;
+
+struct FrameRequest {
+  std::int64_t number = 0;
+  double time_s = 0;
+  Pose pose;
+  CameraView camera;
+};
+
+struct RenderedFrame {
+  FrameLayers layers;
+  FrameStats stats;
+};
+
+class Renderer {
+ public:
+  /// `strategy` is a device strategy, not automatic or reference.
+  Renderer(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
+           Strategy strategy);
+
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request);
+  [[nodiscard]] const Plan& plan() const { return plan_; }
+  [[nodiscard]] const DeviceScene& scene() const { return scene_; }
+  void set_dump(DumpWriter* dump) { dump_ = dump; }
+
+ private:
+  void set_frame(const CameraView& camera, std::uint32_t sample, const Tile& tile);
+  void render_tiles(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
+  [[nodiscard]] bool render_tile(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
+  [[nodiscard]] bool render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile, RenderedFrame& out);
+  void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);
+  void trace_shadows(std::uint32_t generation);
+  void bind_all();
+  void store_tile(const Tile& tile, RenderedFrame& out);
+  void collect_stats(RenderedFrame& out, bool discard);
+
+  const Device& device_;
+  const Features features_;
+  const RenderSettings settings_;
+  const Plan plan_;
+  Recorder recorder_;
+  DeviceScene scene_;
+  RayMemory memory_;
+  Animate animate_;
+  Objects objects_;
+  std::optional<Raster> raster_;
+  Generate generate_;
+  Compact compact_;
+  Shade shade_;
+  Resolve resolve_;
+  std::unique_ptr<Tracer> tracer_;
+  DumpWriter* dump_ = nullptr;
+};
+
+}  // namespace sheaf

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/pose.hpp"
+#include "scene/scene.hpp"
+
+namespace sheaf {
+
+struct WorldBox {
+  glm::dvec3 lo{1e300}, hi{-1e300};
+  [[nodiscard]] bool empty() const { return lo.x > hi.x; }
+};
+
+/// Holds everything the animations show, sampled at 17 evenly spaced moments: a function of scene and animations, not of the
+/// frames asked for. Skins are bounded joint by joint, morphs by their largest deltas.
+[[nodiscard]] WorldBox animated_bounds(const Scene& scene, const std::vector<std::uint32_t>& animations);
+
+}  // namespace sheaf

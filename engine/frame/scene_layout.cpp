@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "frame/scene_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/error.hpp"
+#include "frame/material_layout.hpp"
+
+namespace sheaf {
+namespace {
+
+struct MeshPlace {  // where a mesh lies in the shared buffers, made on first use
+  bool placed = false;
+  gpu::Instance place{};
+  ObjectHierarchy hierarchy;
+  std::uint32_t joint_words = none, morph_first = none, morph_normals = none, morph_tangents = none;
+};
+
+Box triangle_box(const Mesh& mesh, const glm::uvec3& t) {
+  const auto &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
+  return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+}
+
+std::uint32_t append_uvs(SceneLayout& layout, const std::vector<glm::vec2>& uvs) {
+  if (uvs.empty()) return none;
+  const auto first = static_cast<std::uint32_t>(layout.uvs.size());
+  layout.uvs.insert(layout.uvs.end(), uvs.begin(), uvs.end());
+  return first;
+}
+
+template <typename T>
+std::uint32_t append(std::vector<T>& to, const std::vector<T>& from) {
+  if (from.empty()) return none;
+  const auto first = static_cast<std::uint32_t>(to.size());
+  to.insert(to.end(), from.begin(), from.end());
+  return first;
+}
+
+std::uint32_t append_joints(SceneLayout& layout, const Mesh& mesh) {
+  if (mesh.joints.empty()) return none;
+  const auto first = static_cast<std::uint32_t>(layout.joints.size());
+  for (std::size_t v = 0; v < mesh.joints.size(); ++v) {
+    for (std::size_t k = 0; k < 8; k += 2)
+      layout.joints.push_back(mesh.joints[v][k] | static_cast<std::uint32_t>(mesh.joints[v][k + 1]) << 16U);
+    for (std::size_t k = 0; k < 8; ++k) {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &mesh.weights[v][k], 4);
+      layout.joints.push_back(bits);
+    }
+  }
+  return first;
+}
+
+// Deltas of all targets, one block after the other; an attribute that some target lacks is filled with zeros.
+std::uint32_t append_targets(SceneLayout& layout, const Mesh& mesh, std::vector<glm::vec3> MorphTarget::*attribute) {
+  const bool any = std::any_of(mesh.targets.begin(), mesh.targets.end(), [&](const auto& t) { return !(t.*attribute).empty(); });
+  if (!any) return none;
+  const auto first = static_cast<std::uint32_t>(layout.morphs.size());
+  for (const auto& target : mesh.targets) {
+    layout.morphs.insert(layout.morphs.end(), (target.*attribute).begin(), (target.*attribute).end());
+    layout.morphs.resize(layout.morphs.size() + mesh.positions.size() - (target.*attribute).size(), glm::vec3(0));
+  }
+  return first;
+}
+
+void place_mesh(SceneLayout& layout, const Mesh& mesh, MeshPlace& place) {
+  place.placed = true;
+  std::vector<Box> boxes;
+  boxes.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) boxes.push_back(triangle_box(mesh, t));
+  place.hierarchy = build_object_hierarchy(boxes);
+  auto& p = place.place;
+  p.first_index = static_cast<std::uint32_t>(layout.indices.size());
+  p.first_vertex = static_cast<std::uint32_t>(layout.positions.size());
+  p.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (const auto t : place.hierarchy.order)
+    for (int k = 0; k < 3; ++k) layout.indices.push_back(mesh.triangles[t][k]);
+  layout.positions.insert(layout.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  layout.normals.insert(layout.normals.end(), mesh.normals.begin(), mesh.normals.end());
+  p.uv0 = append_uvs(layout, mesh.uv0);
+  p.uv1 = append_uvs(layout, mesh.uv1);
+  p.color = append(layout.colors, mesh.colors);
+  p.tangent = append(layout.tangents, mesh.tangents);
+}
+
+void place_deforming(SceneLayout& layout, const Scene& scene, const InstanceSource& source, gpu::Instance& instance,
+                     MeshPlace& place) {
+  const Mesh& mesh = scene.meshes[source.mesh];
+  const Node& node = scene.nodes[source.node];
+  const bool skinned = node.skin != none && !mesh.joints.empty();
+  if (skinned && place.joint_words == none) place.joint_words = append_joints(layout, mesh);
+  if (!mesh.targets.empty() && place.morph_first == none) {
+    place.morph_first = append_targets(layout, mesh, &MorphTarget::positions);
+    place.morph_normals = append_targets(layout, mesh, &MorphTarget::normals);
+    place.morph_tangents = append_targets(layout, mesh, &MorphTarget::tangents);
+  }
+  gpu::Deform d{};
+  d.first_vertex = instance.first_vertex;
+  d.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+  d.dynamic = instance.dynamic = layout.dynamic_vertices;
+  d.joint_words = skinned ? place.joint_words : none;
+  d.first_matrix = layout.skin_matrices;
+  d.morph_first = place.morph_first;
+  d.morph_normals = place.morph_normals;
+  d.morph_tangents = place.morph_tangents;
+  d.morph_targets = static_cast<std::uint32_t>(mesh.targets.size());
+  d.weight_first = layout.morph_weights;
+  d.tangent = instance.tangent;
+  d.instance = static_cast<std::uint32_t>(layout.instances.size());
+  layout.dynamic_vertices += d.vertex_count;
+  layout.skin_matrices += skinned ? static_cast<std::uint32_t>(scene.skins[node.skin].joints.size()) : 0;
+  layout.morph_weights += d.morph_targets;
+  layout.deforms.push_back(d);
+}
+
+// The mesh's tree once more, for one instance: references moved to its nodes and triangles.
+void place_hierarchy(SceneLayout& layout, const ObjectHierarchy& tree, InstanceSource& source, std::uint32_t first_triangle) {
+  const auto base = static_cast<std::uint32_t>(layout.node_children.size() / wide);
+  source.root = base;
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    for (auto child : tree.nodes[n].child) {
+      if (is_leaf(child))
+        child = leaf_child(leaf_first(child) + first_triangle, leaf_count(child));
+      else if (is_node(child))
+        child += base;
+      layout.node_children.push_back(child);
+    }
+    const auto height = tree.height[n];
+    if (layout.refit_by_height.size() <= height) layout.refit_by_height.resize(height + 1);
+    layout.refit_by_height[height].push_back(base + static_cast<std::uint32_t>(n));
+    layout.node_instance.push_back(static_cast<std::uint32_t>(layout.instances.size()));
+  }
+}
+
+Box mesh_box(const Mesh& mesh) {
+  Box box;
+  for (const auto& p : mesh.positions) {
+    box.lo = glm::min(box.lo, p);
+    box.hi = glm::max(box.hi, p);
+  }
+  return box;
+}
+
+std::vector<InstanceSource> list_instances(const Scene& scene) {
+  std::vector<InstanceSource> sources;
+  for (const auto index : scene.order) {
+    const Node& node = scene.nodes[index];
+    const std::size_t copies = std::max<std::size_t>(node.instances.size(), 1);
+    for (std::uint32_t m = node.first_mesh; m < node.first_mesh + node.mesh_count; ++m) {
+      const Mesh& mesh = scene.meshes[m];
+      if (mesh.triangles.empty()) continue;
+      for (std::size_t c = 0; c < copies; ++c) {
+        InstanceSource source;
+        source.node = index;
+        source.mesh = m;
+        source.deforms = (node.skin != none && !mesh.joints.empty()) || !mesh.targets.empty();
+        glm::dmat4 centre(1);
+        centre[3] = glm::dvec4(mesh.centre, 1);
+        source.within_node = (node.instances.empty() ? glm::dmat4(1) : node.instances[c]) * centre;
+        sources.push_back(source);
+      }
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+SceneLayout lay_out(const Scene& scene, const RenderSettings& settings) {
+  SceneLayout layout;
+  layout.sources = list_instances(scene);
+  const auto material_of = lay_out_materials(scene, settings, layout);
+  layout.top_nodes = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(layout.sources.size()));
+  layout.node_children.assign(std::size_t{layout.top_nodes} * wide, empty_child);
+  std::vector<MeshPlace> places(scene.meshes.size());
+  for (const auto& mesh : scene.meshes) layout.mesh_boxes.push_back(mesh_box(mesh));
+  for (auto& source : layout.sources) {
+    const Mesh& mesh = scene.meshes[source.mesh];
+    MeshPlace& place = places[source.mesh];
+    if (!place.placed) place_mesh(layout, mesh, place);
+    gpu::Instance instance = place.place;
+    instance.first_triangle = static_cast<std::uint32_t>(layout.triangles);
+    instance.dynamic = none;
+    instance.material = material_of[mesh.material];
+    instance.object = source.node + 1;
+    layout.triangles += instance.triangle_count;
+    if (layout.triangles > max_primitives)
+      throw limit_error(scene.path, "more than " + std::to_string(max_primitives) + " triangles with all instances");
+    if (source.deforms) place_deforming(layout, scene, source, instance, place);
+    place_hierarchy(layout, place.hierarchy, source, instance.first_triangle);
+    layout.instances.push_back(instance);
+  }
+  return layout;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Everything that decides a picture besides scene and camera, and what else to report about it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sheaf {
+
+enum class Strategy { automatic, hybrid, crsh, rsh, bvh, brute, rayquery, reference };
+enum class SortPolicy { automatic, on, off };
+enum class PrimaryMethod { raster, trace };
+
+[[nodiscard]] Strategy parse_strategy(const std::string& name);  // Error{usage} naming what there is
+[[nodiscard]] const char* name_of(Strategy strategy);
+
+struct LayerSet {  // --aov
+  bool depth = false, normal = false, position = false, albedo = false, uv = false, id = false, tests = false;
+  [[nodiscard]] bool any_surface() const { return depth || normal || position || albedo || uv || id; }
+};
+
+[[nodiscard]] LayerSet parse_layers(const std::string& list);  // "Z,N,P,albedo,UV,id,tests" or "all"
+
+struct RenderSettings {
+  std::uint32_t width = 1280, height = 720;
+  std::uint32_t samples = 1;
+  std::uint32_t depth = 4;
+  float cutoff = 0.002F;
+  Strategy strategy = Strategy::automatic;
+  SortPolicy sort = SortPolicy::automatic;
+  PrimaryMethod primary = PrimaryMethod::raster;
+  bool opaque = false;
+  LayerSet layers;
+  std::uint64_t memory_mib = 1024;  // for rays, pairs and what else scales with the picture, not with the scene
+  std::optional<glm::vec3> environment;
+  bool counted = true;
+};
+
+/// Throws Error{input} naming the setting, its value and its bounds.
+void check_settings(const RenderSettings& settings);
+
+}  // namespace sheaf

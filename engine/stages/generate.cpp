@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "stages/generate.hpp"
+
+#include <array>
+
+namespace sheaf {
+
+Generate::Generate(const Device& device, const Plan& plan, const Features& features, bool counted) : plan_(plan) {
+  const SpecConstant raster{1, plan.raster};
+  primary_ = Kernel(device, "generate_primary", {&raster, 1});
+  const SpecConstant one{0, 1};
+  begin_ = Kernel(device, "generate_begin", {&one, 1});
+  const std::array constants{SpecConstant{1, plan.shadows},       SpecConstant{2, plan.reflections},
+                             SpecConstant{3, plan.refractions},   SpecConstant{4, plan.textured_normals},
+                             SpecConstant{5, features.volumes},   SpecConstant{6, counted},
+                             SpecConstant{9, features.textured}};
+  generate_ = Kernel(device, "generate", constants);
+}
+
+void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels) const {
+  recorder.stage("generate");
+  memory.reflection[1].bind(recorder);
+  if (memory.visibility) recorder.bind(ROLE_VISIBILITY, memory.visibility);
+  const std::uint32_t unused = 0;
+  recorder.dispatch(primary_, unused, (pixels + gpu::GROUP - 1) / gpu::GROUP);
+}
+
+void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary, bool last) const {
+  recorder.stage("generate");
+  const std::uint32_t primary = is_primary ? 1 : 0;
+  recorder.dispatch(begin_, primary, 1);
+  const std::uint32_t to = 1 - from;
+  recorder.bind(ROLE_SHADOW_RAYS, memory.shadow.rays);
+  if (plan_.reflections) recorder.bind(ROLE_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
+  if (plan_.refractions) recorder.bind(ROLE_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
+  struct {
+    std::uint32_t kind, last;
+  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, last ? 1U : 0U};
+  if (is_primary || plan_.reflections) {
+    memory.reflection[is_primary ? 1 : from].bind(recorder);
+    recorder.dispatch_indirect(generate_, push, gpu::ARGS_PARENTS);
+  }
+  if (!is_primary && plan_.refractions) {
+    memory.refraction[from].bind(recorder);
+    push.kind = gpu::KIND_REFRACTION;
+    recorder.dispatch_indirect(generate_, push, gpu::ARGS_PARENTS_REFRACTION);
+  }
+}
+
+}  // namespace sheaf

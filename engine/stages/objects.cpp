@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "stages/objects.hpp"
+
+namespace sheaf {
+
+Objects::Objects(const Device& device, const Plan& plan) {
+  if (plan.object_hierarchy) refit_ = Kernel(device, "objects_refit");
+}
+
+void Objects::record(Recorder& recorder, const DeviceScene& scene, const Motion& motion) const {
+  if (motion.refit.empty()) return;
+  recorder.stage("objects");
+  recorder.bind(ROLE_WORK, scene.refit_work());
+  for (const auto& [first, count] : motion.refit) {
+    const struct {
+      std::uint32_t first, count;
+    } push{first, count};
+    recorder.dispatch(refit_, push, (std::uint64_t{count} * gpu::WIDE + gpu::GROUP - 1) / gpu::GROUP);
+  }
+}
+
+}  // namespace sheaf

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Raster (R 4.1): the graphics pipeline finds the first hits of a tile into a visibility buffer of (t, triangle).
+#pragma once
+
+#include "frame/device_scene.hpp"
+#include "frame/ray_lists.hpp"
+#include "vulkan/kernel.hpp"
+
+namespace sheaf {
+
+struct Tile {
+  std::uint32_t x = 0, y = 0, width = 0, height = 0;
+  [[nodiscard]] std::uint32_t pixels() const { return width * height; }
+};
+
+class Raster {
+ public:
+  Raster(const Device& device, const Features& features);
+  void record(Recorder& recorder, const DeviceScene& scene, const RayMemory& memory, const Tile& tile, std::uint32_t width,
+              std::uint32_t height);
+
+ private:
+  const vk::raii::Framebuffer& framebuffer(std::uint32_t width, std::uint32_t height);
+
+  const Device& device_;
+  PipelineLayout layout_;
+  vk::raii::RenderPass pass_{nullptr};
+  vk::raii::Pipeline pipeline_{nullptr};
+  std::map<std::pair<std::uint32_t, std::uint32_t>, vk::raii::Framebuffer> framebuffers_;
+};
+
+}  // namespace sheaf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Reduce, spine, scatter: the three kernels of one scan (shaders/scan.glsl), dispatched over blocks that the device counted.
+#pragma once
+
+#include <string>
+
+#include "vulkan/kernel.hpp"
+#include "vulkan/recorder.hpp"
+
+namespace sheaf {
+
+struct ScanPush {
+  std::uint32_t kind = 0, key_bits = 0, policy = 0;
+};
+
+class Scan {
+ public:
+  Scan() = default;
+  Scan(const Device& device, const std::string& stem) {
+    const SpecConstant group{0, gpu::SCAN_GROUP};
+    reduce_ = Kernel(device, stem + "_reduce", {&group, 1});
+    spine_ = Kernel(device, stem + "_spine", {&group, 1});
+    scatter_ = Kernel(device, stem + "_scatter", {&group, 1});
+  }
+
+  /// `args`: the ARGS_… record with one workgroup a block. The spine always runs: it publishes the total, also of nothing.
+  void record(Recorder& recorder, const ScanPush& push, std::uint32_t args) const {
+    recorder.dispatch_indirect(reduce_, push, args);
+    recorder.dispatch(spine_, push, 1);
+    recorder.dispatch_indirect(scatter_, push, args);
+  }
+
+  void record_blocks(Recorder& recorder, const ScanPush& push, std::uint64_t blocks) const {
+    recorder.dispatch(reduce_, push, blocks);
+    recorder.dispatch(spine_, push, 1);
+    recorder.dispatch(scatter_, push, blocks);
+  }
+
+ private:
+  Kernel reduce_, spine_, scatter_;
+};
+
+}  // namespace sheaf

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "stages/shade.hpp"
+
+#include <array>
+
+namespace sheaf {
+
+Shade::Shade(const Device& device, const Features& features, bool counted) {
+  const std::array constants{SpecConstant{3, features.translucent() || features.masked}, SpecConstant{6, counted}};
+  shade_ = Kernel(device, "shade", constants);
+}
+
+void Shade::record(Recorder& recorder, const RayMemory& memory) const {
+  recorder.stage("shade");
+  memory.shadow.bind(recorder);
+  recorder.bind(ROLE_SHADOW_RAYS, memory.shadow.rays);
+  const std::uint32_t unused = 0;
+  recorder.dispatch_indirect(shade_, unused, gpu::ARGS_RAYS);
+}
+
+}  // namespace sheaf

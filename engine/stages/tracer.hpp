@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What turns a list of rays into hits. One code path; strategies (algorithm 9) exchange its parts: whether rays are sorted,
+// whether a hierarchy stands over them, and how it meets the objects. All leave the same bytes in the list's hits.
+#pragma once
+
+#include <memory>
+
+#include "frame/device_scene.hpp"
+#include "frame/ray_lists.hpp"
+#include "vulkan/recorder.hpp"
+
+namespace sheaf {
+
+struct TraceContext {
+  const Device& device;
+  const DeviceScene& scene;
+  const RayMemory& memory;
+  const Plan& plan;
+  const Features& features;
+  const RenderSettings& settings;
+  Strategy strategy;
+  bool counted;
+};
+
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  /// What must be made anew after objects moved.
+  virtual void objects_moved(Recorder&, const Motion&) {}
+  /// The list is bound and compacted; its number of rays is on the device. Hits go to the list's slots.
+  virtual void trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t generation) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Tracer> make_tracer(const TraceContext& context);
+
+}  // namespace sheaf

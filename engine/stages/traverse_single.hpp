@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Strategy `bvh`: one ray a lane through the object hierarchy, in the order the rays come.
+#pragma once
+
+#include "stages/tracer.hpp"
+#include "vulkan/kernel.hpp"
+
+namespace sheaf {
+
+/// Kernel variants of the single-ray walk, nearest and any hit; `hybrid` uses them for its loose rays.
+struct SingleKernels {
+  SingleKernels() = default;
+  SingleKernels(const TraceContext& context, bool loose);
+  Kernel nearest, any;
+};
+
+class TraverseSingle final : public Tracer {
+ public:
+  explicit TraverseSingle(const TraceContext& context) : kernels_(context, false) {}
+  void trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t generation) override;
+
+ private:
+  SingleKernels kernels_;
+};
+
+}  // namespace sheaf

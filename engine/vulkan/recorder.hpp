@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The one path by which work reaches the device: roles are bound to buffers, kernels dispatched, stages timed.
+// Every dispatch is followed by a full memory barrier unless it says otherwise; a frame is a chain of stages.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "shared.h"
+#include "vulkan/buffer.hpp"
+#include "vulkan/kernel.hpp"
+
+namespace sheaf {
+
+class Recorder {
+ public:
+  explicit Recorder(const Device& device);
+
+  void bind(std::uint32_t role, const Buffer& buffer) { bound_[role] = buffer.handle(); }
+  void bind(std::uint32_t role, vk::Buffer buffer) { bound_[role] = buffer; }
+
+  /// Device time from here on counts for this stage.
+  void stage(const char* name);
+
+  /// `groups` workgroups; more than the device's limit in x are folded into y.
+  template <typename Push>
+  void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups, bool barrier_after = true) {
+    static_assert(sizeof(Push) <= push_bytes);
+    dispatch_bytes(kernel, &push, sizeof(Push), groups, barrier_after);
+  }
+  /// Workgroups from record `args` (one of ARGS_…) of the buffer bound to ROLE_ARGS.
+  template <typename Push>
+  void dispatch_indirect(const Kernel& kernel, const Push& push, std::uint32_t args, bool barrier_after = true) {
+    static_assert(sizeof(Push) <= push_bytes);
+    indirect_bytes(kernel, &push, sizeof(Push), args, barrier_after);
+  }
+
+  void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
+  void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0,
+            std::uint64_t to_offset = 0);
+  /// At most 64 KiB, taken now.
+  void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
+  void barrier();
+
+  [[nodiscard]] const vk::raii::CommandBuffer& commands() const { return commands_; }
+  [[nodiscard]] const Device& device() const { return device_; }
+  /// Binds a pipeline's roles and push constants (graphics passes do the rest themselves).
+  void bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint point, const void* push, std::size_t bytes,
+                  vk::ShaderStageFlags stages);
+
+  /// Runs what was recorded and waits. Throws Error{device} when the device is lost.
+  void submit_and_wait();
+
+  /// Milliseconds a stage since the last call.
+  [[nodiscard]] std::map<std::string, double> take_times();
+  [[nodiscard]] std::uint64_t dispatches() const { return dispatches_; }
+
+ private:
+  void begin();
+  void dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups, bool barrier_after);
+  void indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args, bool barrier_after);
+  void prepare(const Kernel& kernel, const void* push, std::size_t bytes);
+  void mark(const char* name);
+
+  static constexpr std::uint32_t max_marks = 4096;
+  const Device& device_;
+  vk::raii::CommandPool pool_{nullptr};
+  vk::raii::CommandBuffer commands_{nullptr};
+  vk::raii::Fence fence_{nullptr};
+  vk::raii::QueryPool queries_{nullptr};
+  Buffer unbound_;  // stands in for roles that a kernel declares but its variant never reads
+  std::array<vk::Buffer, ROLE_COUNT> bound_{};
+  std::vector<const char*> marks_;
+  const char* current_ = nullptr;
+  std::map<std::string, double> times_;
+  std::uint64_t dispatches_ = 0;
+  bool recording_ = false;
+};
+
+}  // namespace sheaf

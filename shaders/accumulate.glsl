@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Sums a pixel's light in 32.32 fixed point: integer addition has no order, so neither has the picture.
+BUFFER(ROLE_ACCUMULATION, coherent, uint64_t, accumulation);  // four a pixel of the tile: R G B alpha
+
+uint64_t to_fixed(float v) {
+  if (!(v > 0.0)) return 0ul;  // negative, zero, NaN
+  v = min(v, 1.0e9);
+  float whole = floor(v);
+  return (uint64_t(uint(whole)) << 32) | uint64_t(uint((v - whole) * 4294967296.0));
+}
+
+void accumulate(uint pixel, uint channel, float v) {
+  uint64_t fixed_value = to_fixed(v);
+  if (fixed_value != 0ul) atomicAdd(accumulation[4u * pixel + channel], fixed_value);
+}
+
+void accumulate_rgb(uint pixel, vec3 v) {
+  accumulate(pixel, 0u, v.r);
+  accumulate(pixel, 1u, v.g);
+  accumulate(pixel, 2u, v.b);
+}

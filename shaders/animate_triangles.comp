@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// World-space triangles of the instances that moved, relative to the frame origin. A workgroup takes one block of up to GROUP
+// triangles of one instance.
+#define COMPUTE
+#include "common.glsl"
+BUFFER(ROLE_TRIANGLE_A, writeonly, vec3, triangle_a);
+BUFFER(ROLE_TRIANGLE_B, writeonly, vec3, triangle_b);
+BUFFER(ROLE_TRIANGLE_C, writeonly, vec3, triangle_c);
+BUFFER(ROLE_TRIANGLE_INSTANCE, writeonly, uint, triangle_instance);
+BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
+BUFFER(ROLE_INDICES, readonly, uint, indices);
+BUFFER(ROLE_POSITIONS, readonly, vec3, positions);
+BUFFER(ROLE_DYNAMIC, readonly, vec3, dynamic_vertices);
+BUFFER(ROLE_WORK, readonly, uvec2, work);  // (instance, first triangle within it)
+layout(push_constant) uniform Push { uint blocks; } push;
+
+vec3 world_position(Instance i, uint v) {
+  if (i.dynamic != NO_INDEX) return dynamic_vertices[3u * (i.dynamic + v)];
+  vec3 p = positions[i.first_vertex + v];
+  precise vec3 world = vec3(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p)) + i.translation;
+  return world;
+}
+
+void main() {
+  uint block = global_group();
+  if (block >= push.blocks) return;
+  uvec2 job = work[block];
+  Instance i = instances[job.x];
+  uint local = job.y + gl_LocalInvocationID.x;
+  if (local >= i.triangle_count) return;
+  uint first = i.first_index + 3u * local;
+  uint t = i.first_triangle + local;
+  triangle_a[t] = world_position(i, indices[first]);
+  triangle_b[t] = world_position(i, indices[first + 1u]);
+  triangle_c[t] = world_position(i, indices[first + 2u]);
+  triangle_instance[t] = job.x;
+}

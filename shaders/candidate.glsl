@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// What becomes of a triangle that a ray was found to cross: the nearest counts (ties: the lower triangle), or, for shadow
+// rays, light passes or does not. Every strategy's intersect goes through here.
+#include "attributes.glsl"
+#include "fresnel.glsl"
+
+// MASKED: some material has an alpha mask. TRANSLUCENT: some surface lets light through, shadow rays sum optical depth.
+layout(constant_id = 2) const bool MASKED = true;
+layout(constant_id = 3) const bool TRANSLUCENT = true;
+
+struct Nearest {
+  float t;
+  uint triangle;
+};
+
+void consider_nearest(uint triangle, Shear s, float tmin, inout Nearest best) {
+  TriangleHit h = intersect_scene_triangle(s, triangle, tmin, best.t);
+  if (!h.hit || (h.t == best.t && triangle > best.triangle)) return;
+  if (MASKED && masked_out(triangle, h.barycentric)) return;
+  best.t = h.t;
+  best.triangle = triangle;
+}
+
+struct Shade {      // what a shadow ray has met so far
+  bool blocked;
+  uint triangle;    // the lowest that blocks; any would do
+  float t;
+  ivec3 stops;      // −log2 of the light passed, OPTICAL_STEP steps a stop
+};
+
+const float LEAST_LIGHT = 2.4e-10;  // 2^-32: less is nothing
+const float MAX_STOPS = 65536.0;    // of one crossing: eight of them fit a 32-bit sum
+
+ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STOPS) * float(OPTICAL_STEP))); }
+
+// Optical depth of one crossing at t; false where nothing passes. A finite tmax: the ray comes from the light and ends at the
+// lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one left absorbs over t.
+bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 stops) {
+  Instance instance = instances[triangle_instance[triangle]];
+  Material m = materials[instance.material];
+  if ((m.flags & MATERIAL_NOT_OPAQUE) == 0u) return false;
+  uvec3 v = triangle_vertices(instance, triangle);
+  vec2 uv0 = interpolate_uv(instance.uv0, v, b), uv1 = interpolate_uv(instance.uv1, v, b);
+  vec4 base = base_color_at(instance, m, v, b, uv0, uv1);
+  if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
+  vec3 g = cross(triangle_b[triangle] - triangle_a[triangle], triangle_c[triangle] - triangle_a[triangle]);
+  float cosine = dot(g, direction) / max(length(g), 1e-37) * instance.determinant_sign;
+  vec3 passed = vec3(0);
+  if ((m.flags & (MATERIAL_TRANSMISSIVE | MATERIAL_UNLIT)) == MATERIAL_TRANSMISSIVE) {
+    float transmitted = clamp(m.transmission * look_up(m.transmission_texture, uv0, uv1, false).r, 0.0, 1.0);
+    float metal = clamp(m.metallic * look_up(m.metallic_roughness_texture, uv0, uv1, false).b, 0.0, 1.0);
+    passed = (transmitted * (1.0 - metal) * (1.0 - fresnel(min(abs(cosine), 1.0), 1.0, m.ior))) * base.rgb;
+  }
+  float a = (m.flags & MATERIAL_BLEND) != 0u ? clamp(base.a, 0.0, 1.0) : 1.0;
+  passed = (1.0 - a) + a * passed;
+  if (!(max(max(passed.x, passed.y), passed.z) > LEAST_LIGHT)) return false;
+  stops += to_steps(-log2(clamp(passed, vec3(LEAST_LIGHT), vec3(1))));
+  if (m.volume != 0u) {
+    float inside = tmax < INFINITY ? tmax - t : -t;
+    stops += to_steps(m.absorption * (cosine < 0.0 ? inside : -inside));
+  }
+  return true;
+}
+
+void consider_shadow(uint triangle, Shear s, vec3 direction, float tmin, float tmax, inout Shade shade) {
+  TriangleHit h = intersect_scene_triangle(s, triangle, tmin, tmax);
+  if (!h.hit) return;
+  if (TRANSLUCENT && crossing(triangle, h.barycentric, direction, h.t, tmax, shade.stops)) return;
+  shade.blocked = true;
+  shade.triangle = triangle;
+  shade.t = h.t;
+}

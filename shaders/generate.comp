@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Shades the hits of one list of rays and makes the rays that follow from them: shadow rays (turned round, from the light),
+// reflection and refraction (SHADING.md, "What a hit adds"). Parent i writes reflection and refraction slot base + i and shadow
+// slots (base + i) + light · parents; a slot without a ray is marked, and compaction drops it.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "scene.glsl"
+#include "surface.glsl"
+#include "fresnel.glsl"
+#include "media.glsl"
+#include "accumulate.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_HITS, readonly, uvec2, hits);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_SHADOW_RAYS, writeonly, float, shadow_rays);
+BUFFER(ROLE_REFLECTION_RAYS, writeonly, float, reflection_rays);
+BUFFER(ROLE_REFRACTION_RAYS, writeonly, float, refraction_rays);
+BUFFER(ROLE_LIGHTS, readonly, Light, lights);
+
+layout(constant_id = 1) const bool SHADOWS = true;
+layout(constant_id = 2) const bool REFLECTIONS = true;
+layout(constant_id = 3) const bool REFRACTIONS = true;
+layout(constant_id = 5) const bool VOLUMES = true;
+
+layout(push_constant) uniform Push {
+  uint kind;        // of the parents
+  uint last;        // 1: no further generation
+} push;
+
+struct Parent {
+  Ray ray;
+  vec3 weight;
+  float coverage;
+  uint pixel;
+  uint medium;
+};
+
+Parent load_parent(uint slot) {
+  Parent p;
+  p.ray = LOAD_RAY(rays, slot);
+  p.weight = vec3(RAYS(rays, RAY_WEIGHT, slot), RAYS(rays, RAY_WEIGHT + 1u, slot), RAYS(rays, RAY_WEIGHT + 2u, slot));
+  p.pixel = floatBitsToUint(RAYS(rays, RAY_PIXEL, slot));
+  p.medium = floatBitsToUint(RAYS(rays, RAY_MEDIUM, slot));
+  p.coverage = RAYS(rays, RAY_COVERAGE, slot);
+  return p;
+}
+
+float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
+
+bool worth_a_ray(float weight) { return push.last == 0u && weight > 0.0 && weight >= frame.cutoff; }
+
+uint volume_material(uint volume) {  // volumes are numbered at load; their materials come first in the buffer
+  return volume - 1u;
+}
+
+vec3 light_arriving(Light light, vec3 point, out vec3 towards, out float distance) {
+  vec3 l = light.radiance;
+  if (light.kind == LIGHT_DIRECTIONAL) {
+    towards = -light.direction;
+    distance = INFINITY;
+    return min(l, vec3(1e9));
+  }
+  vec3 away = light.position - point;
+  distance = length(away);
+  towards = distance > 0.0 ? away / distance : vec3(0);
+  float fade = 1.0;
+  if (light.range < INFINITY) {
+    float q = distance / light.range;
+    fade = clamp(1.0 - q * q * q * q, 0.0, 1.0);
+  }
+  if (light.kind == LIGHT_SPOT) {
+    float cone = clamp(dot(-towards, light.direction) * light.spot_scale + light.spot_offset, 0.0, 1.0);
+    fade *= cone * cone;
+  }
+  return min(l * (fade / max(distance * distance, 1e-30)), vec3(1e9));
+}
+
+vec3 reflectance(Surface s, vec3 f0, vec3 v, vec3 l) {  // f · (n·l)
+  float nl = dot(s.normal, l);
+  float nv = clamp(dot(s.normal, v), 1e-4, 1.0);
+  vec3 h = safe_normalize(v + l, s.normal);
+  float nh = clamp(dot(s.normal, h), 0.0, 1.0);
+  vec3 f = schlick(f0, clamp(dot(v, h), 0.0, 1.0));
+  float rough = max(s.roughness, 0.1);
+  float a2 = rough * rough * rough * rough;
+  float q = nh * nh * (a2 - 1.0) + 1.0;
+  float d = a2 / (3.14159265 * q * q);
+  float visibility = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
+  vec3 diffuse = (1.0 - f) * ((1.0 - s.metallic) * (1.0 - s.transmission) / 3.14159265) * s.base.rgb;
+  return (diffuse + f * (d * visibility)) * nl;
+}
+
+void no_ray_shadow(uint slot) { RAYS(shadow_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX); }
+void no_ray_reflection(uint slot) {
+  if (REFLECTIONS) RAYS(reflection_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX);
+}
+void no_ray_refraction(uint slot) {
+  if (REFRACTIONS) RAYS(refraction_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX);
+}
+
+void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec3 v, uint pixel) {
+  Light light = lights[index];
+  vec3 l;
+  float distance;
+  vec3 arriving = light_arriving(light, s.point, l, distance);
+  vec3 carried = vec3(0);
+  if (dot(s.normal, l) > 0.0 && dot(s.geometric, l) > 0.0) carried = weight * reflectance(s, f0, v, l) * arriving;
+  if (!(largest(carried) > 0.0)) {
+    no_ray_shadow(slot);
+    return;
+  }
+  vec3 target = offset_origin(s, l, light.kind == LIGHT_DIRECTIONAL ? 0.0 : distance);
+  vec3 origin = light.position, direction = target - light.position;
+  float tmax = length(direction);
+  if (light.kind == LIGHT_DIRECTIONAL) {
+    origin = target;
+    direction = l;
+    tmax = INFINITY;
+  } else {
+    direction = tmax > 0.0 ? direction / tmax : -l;
+  }
+  STORE_RAY(shadow_rays, slot, origin, direction, 0.0, tmax, carried);
+  RAYS(shadow_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
+  RAYS(shadow_rays, RAY_MEDIUM, slot) = uintBitsToFloat(index);
+}
+
+void make_reflection_ray(uint slot, Surface s, vec3 weight, Parent p) {
+  if (!worth_a_ray(largest(weight))) {
+    no_ray_reflection(slot);
+    return;
+  }
+  vec3 d = reflect(p.ray.direction, s.normal);
+  if (!(dot(d, s.geometric) > 0.0)) d = reflect(p.ray.direction, s.geometric);
+  d = safe_normalize(d, s.geometric);
+  vec3 o = offset_origin(s, s.geometric, 0.0);
+  STORE_RAY(reflection_rays, slot, o, d, 0.0, INFINITY, weight);
+  RAYS(reflection_rays, RAY_PIXEL, slot) = uintBitsToFloat(p.pixel);
+  RAYS(reflection_rays, RAY_MEDIUM, slot) = uintBitsToFloat(p.medium);
+  RAYS(reflection_rays, RAY_COVERAGE, slot) = 0.0;
+}
+
+void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel) {
+  if (!worth_a_ray(max(largest(weight), coverage))) {
+    no_ray_refraction(slot);
+    return;
+  }
+  vec3 o = offset_origin(s, -s.geometric, 0.0);
+  STORE_RAY(refraction_rays, slot, o, direction, 0.0, INFINITY, weight);
+  RAYS(refraction_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
+  RAYS(refraction_rays, RAY_MEDIUM, slot) = uintBitsToFloat(medium);
+  RAYS(refraction_rays, RAY_COVERAGE, slot) = coverage;
+}
+
+float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : materials[volume_material(stack & 0xFFu)].ior; }
+
+// Snell about n; false in total internal reflection.
+bool bend(vec3 d, vec3 n, float eta, out vec3 t) {
+  float c = -dot(d, n);
+  float k = 1.0 - eta * eta * (1.0 - c * c);
+  t = eta * d + (eta * c - sqrt(max(k, 0.0))) * n;
+  return k > 0.0;
+}
+
+// Steps 7 to 9 for a surface that lets light through.
+void make_transmitted_rays(uint slot, Surface s, Material m, vec3 weight, Parent p, float mirror, float nv) {
+  bool volume = VOLUMES && m.volume != 0u;
+  float n1 = 1.0, n2 = m.ior;
+  uint medium = p.medium;
+  if (volume && s.front) {
+    n1 = ior_of(p.medium);
+    medium = media_push(p.medium, m.volume);
+  } else if (volume) {
+    medium = media_remove(p.medium, m.volume);
+    n1 = m.ior;
+    n2 = ior_of(medium);
+  }
+  vec3 n = s.normal;
+  float cos1 = -dot(p.ray.direction, n);
+  if (!(cos1 > 0.0)) {
+    n = s.geometric;
+    cos1 = clamp(-dot(p.ray.direction, n), 0.0, 1.0);
+  }
+  float f = fresnel(min(cos1, 1.0), n1, n2);
+  vec3 fs = mix(vec3(f), schlick(s.base.rgb, nv), s.metallic);
+  make_reflection_ray(slot, s, weight * mix(mirror, 1.0, s.transmission) * fs, p);
+  if (!REFRACTIONS) return;
+  vec3 through = weight * (s.transmission * (1.0 - s.metallic) * (1.0 - f)) * s.base.rgb;
+  vec3 t = p.ray.direction;
+  bool passes = f < 1.0;
+  if (volume && passes) {
+    passes = bend(p.ray.direction, n, n1 / n2, t);
+    if (passes && dot(t, s.geometric) >= 0.0) passes = bend(p.ray.direction, s.geometric, n1 / n2, t);
+    t = safe_normalize(t, p.ray.direction);
+  }
+  make_refraction_ray(slot, s, t, passes ? through : vec3(-1), medium, passes ? 0.0 : -1.0, p.pixel);
+}
+
+vec3 absorbed(Parent p, Surface s, Material m, float t) {
+  uint top = p.medium & 0xFFu;
+  vec3 stops = vec3(0);
+  if (top != 0u)
+    stops = materials[volume_material(top)].absorption;
+  else if (m.volume != 0u && !s.front)
+    stops = m.absorption;
+  return vec3(stops.x > 0.0 ? exp2(-stops.x * t) : 1.0, stops.y > 0.0 ? exp2(-stops.y * t) : 1.0,
+              stops.z > 0.0 ? exp2(-stops.z * t) : 1.0);
+}
+
+void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
+  TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), triangle_a[triangle], triangle_b[triangle],
+                                       triangle_c[triangle], 0.0);
+  Surface s = surface_at(triangle, at.barycentric, p.ray.direction);
+  Material m = materials[s.material];
+  if (VOLUMES) p.weight *= absorbed(p, s, m, t);
+  float alpha = (m.flags & MATERIAL_BLEND) != 0u ? clamp(s.base.a, 0.0, 1.0) : 1.0;
+  if (alpha < 1.0) s.transmission = 0.0;  // one straight ray goes on; see SHADING.md, 1
+  accumulate(p.pixel, 3u, p.coverage * alpha);
+  vec3 weight = p.weight * alpha;
+  bool unlit = (m.flags & MATERIAL_UNLIT) != 0u;
+  vec3 v = -p.ray.direction;
+  float nv = clamp(dot(s.normal, v), 1e-4, 1.0);
+  float r0 = (m.ior - 1.0) / (m.ior + 1.0);
+  vec3 f0 = mix(vec3(r0 * r0), s.base.rgb, s.metallic);
+  float q = max(1.0 - s.roughness / 0.4, 0.0);
+  float mirror = q * q;
+  if (unlit) {
+    accumulate_rgb(p.pixel, weight * s.base.rgb);
+  } else {
+    vec3 ambient = ((1.0 - s.metallic) * (1.0 - s.transmission)) * s.base.rgb + (1.0 - mirror) * schlick(f0, nv);
+    accumulate_rgb(p.pixel, weight * (s.emission + frame.environment * ambient * s.occlusion));
+  }
+  if (SHADOWS)
+    for (uint i = 0u; i < frame.lights; ++i) {
+      uint shadow_slot = slot + i * parents;
+      if (unlit)
+        no_ray_shadow(shadow_slot);
+      else
+        make_shadow_ray(shadow_slot, i, s, weight, f0, v, p.pixel);
+    }
+  if (REFRACTIONS && s.transmission > 0.0 && !unlit) {
+    make_transmitted_rays(slot, s, m, weight, p, mirror, nv);
+    return;
+  }
+  if (REFRACTIONS && alpha < 1.0)
+    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel);
+  else
+    no_ray_refraction(slot);
+  if (REFLECTIONS && !unlit)
+    make_reflection_ray(slot, s, weight * (mirror * schlick(f0, nv)), p);
+  else
+    no_ray_reflection(slot);
+}
+
+void main() {
+  uint i = global_index();
+  if (i >= counters[COUNT_RAYS + push.kind]) return;
+  uint parents = counters[COUNT_PARENTS];
+  uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
+  uint from = push.kind == KIND_PRIMARY ? i : order[i];
+  uvec2 hit = hits[from];
+  Parent p = load_parent(from);
+  count_tests(push.kind, STAT_HITS, hit.x != NO_INDEX ? 1u : 0u);
+  if (hit.x != NO_INDEX) {
+    shade_hit(slot, parents, hit.x, uintBitsToFloat(hit.y), p);
+    return;
+  }
+  if (!(p.coverage > 0.0)) accumulate_rgb(p.pixel, p.weight * frame.environment);
+  if (SHADOWS)
+    for (uint k = 0u; k < frame.lights; ++k) no_ray_shadow(slot + k * parents);
+  no_ray_reflection(slot);
+  no_ray_refraction(slot);
+}

@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: MIT
+BUFFER(ROLE_COUNTERS, coherent, uint, counters);

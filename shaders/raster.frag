@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The rasteriser finds which triangles cover a sample; which is nearest is decided by the same t and the same tie as for traced
+// rays, in one 64-bit minimum. Interpolated depth would disagree with the ray tracer on coplanar and distant faces.
+#include "common.glsl"
+#include "rays.glsl"
+#include "scene.glsl"
+#include "camera.glsl"
+#include "attributes.glsl"
+layout(constant_id = 2) const bool MASKED = true;
+BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
+layout(location = 0) flat in uint triangle;
+
+void main() {
+  uvec2 at = uvec2(gl_FragCoord.xy);
+  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y);
+  TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), triangle_a[triangle], triangle_b[triangle],
+                                      triangle_c[triangle], 0.0);
+  if (!(h.t >= ray.tmin && h.t <= ray.tmax)) return;
+  uint64_t found = (uint64_t(floatBitsToUint(h.t)) << 32) | uint64_t(triangle);
+  uint pixel = at.y * frame.tile_width + at.x;
+  if (found >= visibility[pixel]) return;  // only ever falls: a stale value costs an atomic, nothing else
+  if (MASKED && masked_out(triangle, h.barycentric)) return;
+  atomicMin(visibility[pixel], found);
+}

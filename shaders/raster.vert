@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The raster pass pulls world-space triangles; clip positions only decide coverage, depth comes from the fragment.
+#include "common.glsl"
+#include "rays.glsl"
+BUFFER(ROLE_TRIANGLE_A, readonly, vec3, triangle_a);
+BUFFER(ROLE_TRIANGLE_B, readonly, vec3, triangle_b);
+BUFFER(ROLE_TRIANGLE_C, readonly, vec3, triangle_c);
+layout(location = 0) flat out uint triangle;
+
+void main() {
+  triangle = gl_VertexIndex / 3u;
+  uint corner = gl_VertexIndex % 3u;
+  vec3 p = corner == 0u ? triangle_a[triangle] : corner == 1u ? triangle_b[triangle] : triangle_c[triangle];
+  vec3 v = p - frame.eye;
+  float x = dot(v, frame.right) / dot(frame.right, frame.right);
+  float y = dot(v, frame.up) / dot(frame.up, frame.up);
+  float z = dot(v, frame.forward);
+  // The sample's offset in its pixel moves the picture the other way; pixel centres are where rasterisers sample.
+  vec2 shift = vec2(1.0 - 2.0 * frame.jitter_x, 1.0 - 2.0 * frame.jitter_y) / vec2(frame.width, frame.height);
+  // Clip z only keeps what lies before the near plane (or within rounding of the eye) away from w = 0.
+  float near = max(frame.near, frame.box_pad);
+  if (frame.orthographic != 0u)
+    gl_Position = vec4(x + shift.x, -y + shift.y, 0.5, 1.0);
+  else
+    gl_Position = vec4(x + shift.x * z, -y + shift.y * z, 0.5 * (z - near), z);
+}

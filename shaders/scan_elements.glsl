@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What is scanned, and what becomes of the result: one of the SCAN_… names, defined by the build's table of variants.
+#include "rays.glsl"
+#include "lists.glsl"
+#include "args.glsl"
+layout(push_constant) uniform Push {
+  uint kind;
+  uint key_bits;
+  uint policy;   // of sorting: 0 off, 1 auto, 2 on
+} push;
+
+#if defined(SCAN_COMPACT)
+// Slots that hold a ray → their list, in slot order.
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, writeonly, uint, order);
+BUFFER(ROLE_STATS, coherent, uint64_t, stats);
+uint scan_count() { return counters[COUNT_SLOTS + push.kind]; }
+uint scan_load(uint i) { return floatBitsToUint(RAYS(rays, RAY_PIXEL, i)) != NO_INDEX ? 1u : 0u; }
+void scan_store(uint i, uint before, uint own) {
+  if (own != 0u) order[before] = i;
+}
+void scan_total(uint total) {
+  counters[COUNT_RAYS + push.kind] = total;
+  stats[push.kind * STAT_FIELDS + STAT_RAYS] += uint64_t(total);
+  set_list_args(total);
+}
+#elif defined(SCAN_COMPRESS)
+// Neighbours with equal keys → chunks (R 4.2, Compression). The order is kept aside for decompression.
+BUFFER(ROLE_KEYS, readonly, uint, keys);
+BUFFER(ROLE_CHUNKS, writeonly, uvec3, chunks);  // key, base, size
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_SCAN_OUT, writeonly, uint, order_kept);
+uint scan_count() { return counters[COUNT_RAYS + push.kind]; }
+uint scan_load(uint i) { return i == 0u || keys[i] != keys[i - 1u] ? 1u : 0u; }
+void scan_store(uint i, uint before, uint own) {
+  order_kept[i] = order[i];
+  if (own != 0u) {
+    chunks[before].x = keys[i];
+    chunks[before].y = i;
+  }
+}
+// Sorting pays where neighbours in pixel order are not neighbours in ray space: more than one change of key in a run of 16.
+void scan_total(uint total) {
+  uint rays = scan_count();
+  bool sorted = push.policy == 2u || (push.policy == 1u && total > rays / 16u && rays > 2u * BUNDLE);
+  counters[COUNT_CHUNKS] = total;
+  counters[COUNT_SORT] = sorted ? 1u : 0u;
+  set_args(ARGS_CHUNKS, sorted ? groups_of(total, SCAN_BLOCK) : 0u);
+  set_args(ARGS_SORTED, sorted ? groups_of(rays, SCAN_BLOCK) : 0u);
+}
+#elif defined(SCAN_STARTS)
+// Sizes of the sorted chunks → where each starts; its base is set into the skeleton as a head (R 4.2, Decompression).
+BUFFER(ROLE_CHUNKS, readonly, uvec3, chunks);
+BUFFER(ROLE_SKELETON, writeonly, uint, skeleton);
+uint scan_count() { return counters[COUNT_CHUNKS]; }
+uint scan_load(uint i) { return chunks[i].z; }
+void scan_store(uint i, uint before, uint own) { skeleton[before] = 0x80000000u | chunks[i].y; }
+void scan_total(uint total) {}
+#elif defined(SCAN_SEGMENTED)
+// Inclusive segmented scan of the skeleton: heads hold a chunk's base, the rest 1, so each place gets its ray's old place.
+BUFFER(ROLE_SKELETON, readonly, uint, skeleton);
+BUFFER(ROLE_SCAN_OUT, readonly, uint, order_kept);
+BUFFER(ROLE_ORDER, writeonly, uint, order);
+uint scan_count() { return counters[COUNT_RAYS + push.kind]; }
+uint scan_load(uint i) { return skeleton[i]; }
+#define SCAN_INCLUSIVE
+void scan_store(uint i, uint upto, uint own) { order[i] = order_kept[upto & 0x7FFFFFFFu]; }
+void scan_total(uint total) {}
+#elif defined(SCAN_PAIRS)
+// Pairs that survived their test → the list of the next level: no gaps, no reordering (R 4.4).
+BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
+BUFFER(ROLE_SURVIVORS, readonly, uint, survivors);
+BUFFER(ROLE_PAIRS_NEXT, writeonly, uvec2, pairs_next);
+uint scan_count() { return counters[COUNT_PAIRS]; }
+uint scan_load(uint i) { return survivors[i]; }
+void scan_store(uint i, uint before, uint own) {
+  if (own != 0u) pairs_next[before] = pairs[i];
+}
+void scan_total(uint total) { counters[COUNT_PAIRS + 8u] = total; }
+#elif defined(SCAN_LOOSE)
+// Bundles too wide to be walked as one → a list of their rays, and the rest → a list of bundles.
+BUFFER(ROLE_BUNDLE_FLAGS, readonly, uint, bundle_flags);
+BUFFER(ROLE_WORK, writeonly, uint, work);  // loose bundles from the front, tight ones from the back
+uint scan_count() { return groups_of(counters[COUNT_RAYS + push.kind], BUNDLE); }
+uint scan_load(uint i) { return bundle_flags[i]; }
+void scan_store(uint i, uint before, uint own) {
+  if (own != 0u)
+    work[before] = i;
+  else
+    work[frame.capacity - 1u - (i - before)] = i;
+}
+void scan_total(uint total) {
+  uint bundles = scan_count();
+  counters[COUNT_LOOSE] = total;
+  counters[COUNT_TIGHT] = bundles - total;
+  set_args(ARGS_LOOSE, total);
+  set_args(ARGS_TIGHT, bundles - total);
+}
+#else
+// Any array of numbers: the primitive itself, for its tests.
+BUFFER(ROLE_SCAN_IN, readonly, uint, scan_in);
+BUFFER(ROLE_SCAN_OUT, writeonly, uint, scan_out);
+uint scan_count() { return counters[0]; }
+uint scan_load(uint i) { return scan_in[i]; }
+#if defined(SCAN_PLAIN_SEGMENTED)
+#define SCAN_INCLUSIVE
+#endif
+void scan_store(uint i, uint result, uint own) { scan_out[i] = result; }
+void scan_total(uint total) { counters[1] = total; }
+#endif

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define COMPUTE
+#include "common.glsl"
+#include "scan_elements.glsl"
+#include "scan.glsl"
+
+void main() {
+  uint block = global_group(), count = scan_count();
+  uint first = block * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  uint sum = 0u;
+  for (uint i = first; i < min(first + SCAN_RUN, count); ++i) sum = scan_join(sum, scan_load(i));
+  uint total;
+  scan_workgroup(sum, total);
+  if (gl_LocalInvocationID.x == 0u && block * SCAN_BLOCK < count) block_sums[block] = total;
+}

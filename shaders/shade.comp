@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Adds the light of the shadow rays that got through, and counts.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "accumulate.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+BUFFER(ROLE_SHADOW_RAYS, readonly, float, rays);
+BUFFER(ROLE_HITS, readonly, uvec2, hits);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
+layout(constant_id = 3) const bool TRANSLUCENT = true;
+
+void main() {
+  uint i = global_index();
+  if (i >= counters[COUNT_RAYS + KIND_SHADOW]) return;
+  uint slot = order[i];
+  bool blocked = hits[slot].x != NO_INDEX;
+  count_tests(KIND_SHADOW, STAT_HITS, blocked ? 1u : 0u);
+  if (blocked) return;
+  vec3 light = vec3(RAYS(rays, RAY_WEIGHT, slot), RAYS(rays, RAY_WEIGHT + 1u, slot), RAYS(rays, RAY_WEIGHT + 2u, slot));
+  if (TRANSLUCENT) {
+    ivec3 stops = max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
+    light *= exp2(-vec3(stops) / float(OPTICAL_STEP));
+  }
+  accumulate_rgb(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), light);
+}

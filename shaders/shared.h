@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: MIT
+// The one header that GLSL and C++ share: bindings, sizes, structs. Scalar layout on both sides (vec3 = 12 bytes).
+#ifndef SHEAF_SHARED_H
+#define SHEAF_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace sheaf::gpu {
+using uint = std::uint32_t;
+using vec2 = glm::vec2;
+using vec3 = glm::vec3;
+using vec4 = glm::vec4;
+using uvec2 = glm::uvec2;
+using mat3 = glm::mat3;
+#define SHEAF_CONST inline constexpr uint
+#else
+#define SHEAF_CONST const uint
+#endif
+
+// Roles of storage buffers. A role has the same binding number in every shader; a kernel declares the roles it reads.
+#define ROLE_FRAME 0
+#define ROLE_COUNTERS 1
+#define ROLE_ARGS 2
+#define ROLE_TRIANGLE_A 3
+#define ROLE_TRIANGLE_B 4
+#define ROLE_TRIANGLE_C 5
+#define ROLE_TRIANGLE_INSTANCE 6
+#define ROLE_INSTANCES 7
+#define ROLE_INDICES 8
+#define ROLE_POSITIONS 9
+#define ROLE_NORMALS 10
+#define ROLE_TANGENTS 11
+#define ROLE_UVS 12
+#define ROLE_COLORS 13
+#define ROLE_MATERIALS 14
+#define ROLE_TEXTURES 15
+#define ROLE_TEXELS 16
+#define ROLE_LIGHTS 17
+#define ROLE_NODES 18
+#define ROLE_RAYS 19
+#define ROLE_HITS 20
+#define ROLE_ORDER 21
+#define ROLE_SHADOW_RAYS 22
+#define ROLE_REFLECTION_RAYS 23
+#define ROLE_REFRACTION_RAYS 24
+#define ROLE_ACCUMULATION 25
+#define ROLE_BLOCK_SUMS 26
+#define ROLE_KEYS 27
+#define ROLE_CHUNKS 28
+#define ROLE_CHUNKS_ALT 29
+#define ROLE_SKELETON 30
+#define ROLE_RAY_NODES 31
+#define ROLE_PAIRS 32
+#define ROLE_PAIRS_NEXT 33
+#define ROLE_SURVIVORS 34
+#define ROLE_SPHERES 35
+#define ROLE_MESH_SPHERES 36
+#define ROLE_OPTICAL_DEPTH 37
+#define ROLE_VISIBILITY 38
+#define ROLE_LAYERS 39
+#define ROLE_PIXEL_TESTS 40
+#define ROLE_OUTPUT 41
+#define ROLE_WORK 42
+#define ROLE_DYNAMIC 43
+#define ROLE_DEFORM 44
+#define ROLE_JOINTS 45
+#define ROLE_MORPHS 46
+#define ROLE_SCAN_IN 47
+#define ROLE_SCAN_OUT 48
+#define ROLE_BUNDLE_FLAGS 49
+#define ROLE_STATS 50
+#define ROLE_BOXES 51
+#define ROLE_COUNT 52
+
+SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
+
+// Kinds of ray, in the order of the stats.
+SHEAF_CONST KIND_PRIMARY = 0u;
+SHEAF_CONST KIND_SHADOW = 1u;
+SHEAF_CONST KIND_REFLECTION = 2u;
+SHEAF_CONST KIND_REFRACTION = 3u;
+
+// Rays are structures of arrays: word w of ray i lies at w * capacity + i, so that a vector of rays loads consecutively.
+SHEAF_CONST RAY_ORIGIN = 0u;     // 3 words
+SHEAF_CONST RAY_DIRECTION = 3u;  // 3 words, unit length
+SHEAF_CONST RAY_TMIN = 6u;
+SHEAF_CONST RAY_TMAX = 7u;
+SHEAF_CONST RAY_WEIGHT = 8u;     // 3 words; a shadow ray: the light it carries if nothing is in the way
+SHEAF_CONST RAY_PIXEL = 11u;     // index in the band; NO_INDEX: the slot holds no ray
+SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light
+SHEAF_CONST RAY_COVERAGE = 13u;
+SHEAF_CONST RAY_WORDS = 14u;
+
+// Counters written by the device; one block, cleared at the start of a band.
+SHEAF_CONST COUNT_PARENTS = 0u;       // rays whose hits the next generate reads
+SHEAF_CONST COUNT_SLOTS = 1u;         // slots to compact: 1 + kind
+SHEAF_CONST COUNT_RAYS = 5u;          // rays of the list at work: 5 + kind
+SHEAF_CONST COUNT_CHUNKS = 9u;
+SHEAF_CONST COUNT_OVERFLOW = 10u;     // not 0: the band needs more slots than there are
+SHEAF_CONST COUNT_PAIRS = 11u;        // pairs that survived a level
+SHEAF_CONST COUNT_TIGHT = 12u;        // bundles fit for traversal as a whole
+SHEAF_CONST COUNT_LOOSE = 13u;        // rays that go one a lane
+SHEAF_CONST COUNT_SORT = 14u;         // 1: the batch is worth sorting
+SHEAF_CONST COUNT_BOUNDS = 16u;       // 6 words: ordered-integer bounds of the batch's origins
+SHEAF_CONST COUNT_WORDS = 32u;
+
+// Statistics, 64-bit sums as two words (low, high), a block of STAT_WORDS a kind.
+SHEAF_CONST STAT_RAYS = 0u;
+SHEAF_CONST STAT_HITS = 1u;
+SHEAF_CONST STAT_NODE_OBJECT = 2u;
+SHEAF_CONST STAT_RAY_BOX = 3u;
+SHEAF_CONST STAT_RAY_TRIANGLE = 4u;
+SHEAF_CONST STAT_LEVELS = 5u;         // node-object tests of the levels 0 (rays) … 15
+SHEAF_CONST STAT_FIELDS = 21u;
+// Then one record a (generation, kind): rays, chunks, sorted, tight bundles.
+SHEAF_CONST STAT_GENERATIONS = 4u * STAT_FIELDS * 2u;
+SHEAF_CONST STAT_GENERATION_WORDS = 4u;
+SHEAF_CONST MAX_GENERATION_RECORDS = 64u;
+SHEAF_CONST STAT_WORDS = STAT_GENERATIONS + STAT_GENERATION_WORDS * 4u * MAX_GENERATION_RECORDS;
+
+// Indirect dispatch arguments: three words each.
+SHEAF_CONST ARGS_RAYS = 0u;       // one invocation a ray of the list
+SHEAF_CONST ARGS_BLOCKS = 1u;     // one workgroup a scan block of the list
+SHEAF_CONST ARGS_BUNDLES = 2u;    // one workgroup a bundle of the list
+SHEAF_CONST ARGS_CHUNKS = 3u;     // one workgroup a sort block of the chunks
+SHEAF_CONST ARGS_PARENTS = 4u;    // one invocation a parent
+SHEAF_CONST ARGS_SLOTS = 5u;      // one workgroup a scan block of the slots
+SHEAF_CONST ARGS_SORTED = 6u;     // like ARGS_BLOCKS, or nothing when the batch is not sorted
+SHEAF_CONST ARGS_LOOSE = 7u;      // one invocation a loose ray
+SHEAF_CONST ARGS_TIGHT = 8u;      // one workgroup a tight bundle
+SHEAF_CONST ARGS_ONE = 9u;        // a single workgroup, or nothing when the list is empty
+SHEAF_CONST ARGS_PARENTS_REFRACTION = 10u;
+SHEAF_CONST ARGS_SLOTS_SHADOW = 11u;
+SHEAF_CONST ARGS_COUNT = 12u;
+
+SHEAF_CONST GROUP = 64u;          // invocations of a plain workgroup
+SHEAF_CONST SCAN_GROUP = 32u;     // invocations of a scan workgroup …
+SHEAF_CONST SCAN_RUN = 32u;       // … each with a run of elements: a serial loop is the cheapest scan on a CPU device
+SHEAF_CONST SCAN_BLOCK = SCAN_GROUP * SCAN_RUN;
+SHEAF_CONST RADIX_BITS = 4u;
+SHEAF_CONST RADIX = 1u << RADIX_BITS;
+SHEAF_CONST BUNDLE = 64u;         // rays of a bundle: level 3 of the arity-4 hierarchy
+SHEAF_CONST ARITY = 4u;
+SHEAF_CONST MAX_LEVELS = 16u;
+SHEAF_CONST OPTICAL_STEP = 4096u;  // steps of the fixed-point optical depth in one stop (factor 2): 2^-13 stops of rounding a crossing
+
+// Object hierarchy: 8-wide nodes, 56 words: lo.x[8] lo.y[8] lo.z[8] hi.x[8] hi.y[8] hi.z[8] child[8].
+SHEAF_CONST WIDE = 8u;
+SHEAF_CONST NODE_WORDS = 56u;
+SHEAF_CONST NODE_CHILD = 48u;
+SHEAF_CONST CHILD_EMPTY = 0xFFFFFFFFu;
+SHEAF_CONST CHILD_LEAF = 0x80000000u;  // bits 27..30 count − 1, bits 0..26 first triangle
+SHEAF_CONST STACK_SIZE = 128u;         // ≥ 7 · depth + 1 for two stacked trees of depth ≤ 9 each in practice; checked on the host
+
+// Nodes of the ray hierarchy: 8 words (R 4.3).
+SHEAF_CONST RAY_NODE_WORDS = 8u;
+
+SHEAF_CONST MATERIAL_MASK = 1u;
+SHEAF_CONST MATERIAL_BLEND = 2u;
+SHEAF_CONST MATERIAL_UNLIT = 4u;
+SHEAF_CONST MATERIAL_VOLUME = 8u;
+SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
+// A triangle of a material with any of these may let light through: shadow rays look closer.
+SHEAF_CONST MATERIAL_NOT_OPAQUE = MATERIAL_MASK | MATERIAL_BLEND | MATERIAL_TRANSMISSIVE;
+
+SHEAF_CONST LIGHT_DIRECTIONAL = 0u;
+SHEAF_CONST LIGHT_POINT = 1u;
+SHEAF_CONST LIGHT_SPOT = 2u;
+
+struct TextureUse {
+  vec2 offset;
+  vec2 scale;
+  float rotation;
+  float strength;
+  uint texture;  // NO_INDEX: none
+  uint uv_set;
+};
+
+struct Material {
+  vec4 base_color;
+  vec3 emissive;
+  float metallic;
+  float roughness;
+  float alpha_cutoff;
+  float transmission;
+  float ior;
+  vec3 absorption;  // −log2(attenuation color) / distance: stops a metre
+  uint flags;
+  uint volume;      // 1 … 255 for volumes, else 0; volume n is material n − 1 of the buffer
+  uint id;          // material of the file + 1
+  TextureUse base_color_texture;
+  TextureUse metallic_roughness_texture;
+  TextureUse normal_texture;
+  TextureUse occlusion_texture;
+  TextureUse emissive_texture;
+  TextureUse transmission_texture;
+};
+
+struct Texture {
+  uint first_texel;
+  uint width;
+  uint height;
+  uint flags;  // bits 0–1 wrap s, 2–3 wrap t, 4 nearest
+};
+
+struct Instance {
+  vec3 row0;        // rows of the linear part, and the translation relative to the frame origin
+  vec3 row1;
+  vec3 row2;
+  vec3 translation;
+  vec3 normal0;     // rows of the inverse transpose (times the determinant's magnitude: directions only)
+  vec3 normal1;
+  vec3 normal2;
+  float determinant_sign;
+  uint first_triangle;
+  uint triangle_count;
+  uint first_index;
+  uint first_vertex;
+  uint uv0;         // offsets into their buffers, NO_INDEX where the mesh has none
+  uint uv1;
+  uint color;
+  uint tangent;
+  uint dynamic;     // first vertex in the dynamic buffer, NO_INDEX where the instance is rigid
+  uint material;
+  uint object;      // node + 1
+};
+
+struct Light {
+  vec3 position;
+  uint kind;
+  vec3 direction;   // the way the light travels
+  float range;
+  vec3 radiance;    // color · intensity
+  float spot_scale;
+  float spot_offset;
+};
+
+struct Frame {      // per frame and sample
+  vec3 eye;         // relative to the frame origin
+  float near;
+  vec3 right;       // camera axes, scaled by half the image plane's extent at distance 1 (perspective) or by its half extents
+  float far;
+  vec3 up;
+  uint orthographic;
+  vec3 forward;
+  float cutoff;
+  vec3 environment;
+  uint width;
+  uint height;
+  float jitter_x;
+  float jitter_y;
+  uint lights;
+  uint triangles;
+  uint capacity;    // slots of a ray list
+  uint instances;
+  uint sample_index;
+  float box_pad;    // what every box is widened by: 2^-21 of the largest coordinate, see triangle.glsl
+  uint tile_x;
+  uint tile_y;
+  uint tile_width;
+  uint tile_height;
+};
+
+struct Deform {     // one deforming instance's vertices
+  uint first_vertex;     // static, object space
+  uint vertex_count;
+  uint dynamic;
+  uint joint_words;      // offset into the joint index/weight buffer, NO_INDEX: not skinned
+  uint first_matrix;     // 3x4 matrices, of this instance's skin
+  uint morph_first;      // vec3 offset of the first target's positions
+  uint morph_targets;
+  uint weight_first;
+  uint tangent;
+  uint instance;
+  uint morph_normals;    // vec3 offset of the first target's normals, NO_INDEX: none
+  uint morph_tangents;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(TextureUse) == 32);
+static_assert(sizeof(Material) == 64 + 4 + 6 * 32 || sizeof(Material) % 4 == 0);
+static_assert(sizeof(Instance) == 4 * (21 + 1 + 11));
+}  // namespace sheaf::gpu
+#endif
+#endif

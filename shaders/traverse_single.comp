@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "scene.glsl"
+#include "candidate.glsl"
+#include "results.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+#include "single_ray.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_WORK, readonly, uint, work);
+layout(constant_id = 8) const bool LOOSE = false;
+
+layout(push_constant) uniform Push { uint kind; } push;
+
+void main() {
+  uint i = global_index();
+  if (LOOSE) {
+    if (global_group() >= counters[COUNT_LOOSE]) return;
+    i = work[global_group()] * BUNDLE + gl_LocalInvocationID.x;
+  }
+  if (i >= counters[COUNT_RAYS + push.kind]) return;
+  uint slot = order[i];
+  Ray ray = LOAD_RAY(rays, slot);
+  Nearest best = Nearest(ray.tmax, NO_INDEX);
+  Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+  Tests tests = Tests(0u, 0u);
+  trace_single(ray, best, shade, tests);
+  if (ANY_HIT)
+    store_shade(slot, shade);
+  else
+    store_nearest(slot, best);
+  count_tests(push.kind, STAT_RAY_BOX, tests.boxes);
+  count_tests(push.kind, STAT_RAY_TRIANGLE, tests.triangles);
+  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), tests.boxes + tests.triangles);
+}
