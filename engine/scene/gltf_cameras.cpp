@@ -80,12 +80,8 @@ void load_cameras(GltfFile& file, Scene& scene) {
   for (std::size_t i = 0; i < file.model.cameras.size(); ++i) {
     const json& object = file.json["cameras"][i];
     const std::string type = object.at("type").get<std::string>(), place = at("cameras", i) + "." + type;
-    const json* lens = member(object, type.c_str());
-    if (type != "perspective" && type != "orthographic")
-      file.fail(at("cameras", i) + ".type", "is not perspective or orthographic");
-    if (!lens) file.fail(place, "is missing");
-    scene.cameras.push_back(type == "perspective" ? perspective_camera(file, *lens, place)
-                                                  : orthographic_camera(file, *lens, place));
+    const auto read = type == "perspective" ? &perspective_camera : &orthographic_camera;
+    scene.cameras.push_back(read(file, object.at(type), place));
     scene.cameras.back().name = object.value("name", "");
   }
 }

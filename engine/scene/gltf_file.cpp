@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <exception>
 #include <string_view>
 #include <utility>
 
@@ -50,7 +50,7 @@ void check_extensions(GltfFile& file) {
 // What tinygltf asks for while it reads: files beside the scene, and a place for images' bytes.
 struct Callbacks {
   SceneFolder& folder;
-  GltfFile& file;
+  std::exception_ptr error;  // tinygltf passes over an image that it cannot read: kept to be thrown
 };
 
 bool file_exists(const std::string& name, void* user) { return static_cast<Callbacks*>(user)->folder.holds(name); }
@@ -63,6 +63,7 @@ bool read_whole_file(std::vector<unsigned char>* out, std::string* err, const st
     return true;
   } catch (const Error& error) {
     *err = error.what();
+    static_cast<Callbacks*>(user)->error = std::current_exception();
     return false;
   }
 }
@@ -101,7 +102,7 @@ std::string first_line(const std::string& text) {
 }
 
 void read_model(GltfFile& file, SceneFolder& folder, const std::vector<std::uint8_t>& bytes, bool binary) {
-  Callbacks callbacks{folder, file};
+  Callbacks callbacks{folder, {}};
   tinygltf::FsCallbacks fs{};
   fs.FileExists = &file_exists;
   fs.ExpandFilePath = &same_path;
@@ -119,6 +120,7 @@ void read_model(GltfFile& file, SceneFolder& folder, const std::vector<std::uint
                         ? reader.LoadBinaryFromMemory(&file.model, &err, &warn, bytes.data(), size, folder.path())
                         : reader.LoadASCIIFromString(&file.model, &err, &warn,
                                                      reinterpret_cast<const char*>(bytes.data()), size, folder.path());
+  if (callbacks.error) std::rethrow_exception(callbacks.error);
   if (!read) throw input_error(file.path, first_line(err));
 }
 

@@ -33,6 +33,14 @@ class Checker {
     });
   }
 
+  void check_camera_types() const {
+    visit(document_, "cameras[]", "", [&](const json& camera, const std::string& place) {
+      const auto type = camera.at("type").get<std::string>();
+      if (type != "perspective" && type != "orthographic") fail(place + ".type", "is not perspective or orthographic");
+      if (!camera.contains(type)) fail(place + "." + type, "is missing");
+    });
+  }
+
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
     throw input_error(file_ + ": " + place, reason);
   }
@@ -178,6 +186,7 @@ void check_gltf_document(const json& document, const std::string& file) {
     checker.fail("asset.minVersion", "\"" + minimum + "\" is not supported, only 2.0 is");
   }
   checker.check_channel_samplers();
+  checker.check_camera_types();
   check_view_ranges(document, checker);
 }
 

@@ -71,6 +71,13 @@ bool known_data_uri(std::string_view uri) {
   return false;
 }
 
+// Bytes that a data URI's base64 stands for.
+std::uint64_t decoded_length(std::string_view uri) {
+  std::string_view digits = uri.substr(uri.find(',') + 1);
+  while (digits.ends_with('=')) digits.remove_suffix(1);
+  return std::uint64_t{digits.size()} * 3 / 4;
+}
+
 }  // namespace
 
 SceneFolder::SceneFolder(const std::string& scene_path, std::uint64_t byte_budget)
@@ -89,20 +96,20 @@ std::vector<std::uint8_t> SceneFolder::read_scene() {
 }
 
 fs::path SceneFolder::checked_path(const std::string& uri, const std::string& place) const {
-  const auto refuse = [&](const std::string& reason) -> Error {
-    return input_error(scene_path_ + ": " + place, shown(uri) + " " + reason);
+  const auto require = [&](bool right, const std::string& reason) {
+    if (!right) refuse(place, shown(uri) + " " + reason);
   };
   const std::string name = percent_decoded(uri);
-  if (name.empty() || name.find('\0') != std::string::npos) throw refuse("is not a valid URI");
-  if (has_scheme(name)) throw refuse("is not a file beside the scene");
-  if (fs::path(name).is_absolute() || name.front() == '\\') throw refuse("is an absolute path");
-  if (climbs(name)) throw refuse("leaves the scene's folder");
+  require(!name.empty() && name.find('\0') == std::string::npos, "is not a valid URI");
+  require(!has_scheme(name), "is not a file beside the scene");
+  require(!fs::path(name).is_absolute() && name.front() != '\\', "is an absolute path");
+  require(!climbs(name), "leaves the scene's folder");
   std::error_code error;
   const fs::path path = fs::weakly_canonical(root_ / name, error);
-  if (error) throw refuse("cannot be resolved: " + error.message());
-  if (!inside(path, root_)) throw refuse("leaves the scene's folder");
-  if (!fs::exists(path, error)) throw refuse("does not exist");
-  if (!fs::is_regular_file(path, error)) throw refuse("is not a file");
+  require(!error, "cannot be resolved: " + error.message());
+  require(inside(path, root_), "leaves the scene's folder");
+  require(fs::exists(path, error), "does not exist");
+  require(fs::is_regular_file(path, error), "is not a file");
   return path;
 }
 
@@ -115,42 +122,49 @@ void SceneFolder::check_references(const nlohmann::json& document, std::uint64_t
   for (const auto& buffer : list("buffers")) {
     const std::string place = "buffers[" + std::to_string(i++) + "]";
     const auto length = buffer.at("byteLength").get<std::uint64_t>();
-    if (!buffer.contains("uri")) {
-      if (i == 1 && length <= binary_size) continue;
-      const std::string reason = i > 1 || binary_size == 0
-                                     ? "has no uri"
-                                     : "is longer than the BIN chunk of " + std::to_string(binary_size) + " bytes";
-      throw input_error(scene_path_ + ": " + place, reason);
-    }
-    const std::string uri = buffer.at("uri");
-    if (uri.starts_with("data:")) {
-      if (!known_data_uri(uri))
-        throw input_error(scene_path_ + ": " + place + ".uri",
-                          shown(uri.substr(0, 40)) + " is not a supported data URI");
-      continue;
-    }
-    const fs::path path = checked_path(uri, place + ".uri");
-    std::error_code error;
-    const std::uint64_t size = fs::file_size(path, error);
-    if (error || size < length) {
-      throw input_error(scene_path_ + ": " + place, shown(uri) + " has " + std::to_string(size) +
-                                                        " bytes, byteLength says " + std::to_string(length));
-    }
-    if (!wanted_.emplace(path, length).second && wanted_[path] != length) {
-      throw input_error(scene_path_ + ": " + place, shown(uri) + " is used by two buffers of different byteLength");
+    if (buffer.contains("uri")) {
+      check_buffer_uri(buffer.at("uri").get_ref<const std::string&>(), length, place);
+    } else if (i > 1 || binary_size == 0) {
+      refuse(place, "has no uri");
+    } else if (length > binary_size) {
+      refuse(place, "is longer than the BIN chunk of " + std::to_string(binary_size) + " bytes");
     }
   }
   i = 0;
   for (const auto& image : list("images")) {
     const std::string place = "images[" + std::to_string(i++) + "].uri";
     if (!image.contains("uri")) continue;
-    const std::string uri = image.at("uri");
+    const auto& uri = image.at("uri").get_ref<const std::string&>();
     if (!uri.starts_with("data:")) {
       wanted_.emplace(checked_path(uri, place), std::numeric_limits<std::uint64_t>::max());
     } else if (!known_data_uri(uri)) {
-      throw input_error(scene_path_ + ": " + place, shown(uri.substr(0, 40)) + " is not a supported data URI");
+      refuse(place, shown(uri.substr(0, 40)) + " is not a supported data URI");
     }
   }
+}
+
+void SceneFolder::check_buffer_uri(const std::string& uri, std::uint64_t length, const std::string& place) {
+  const auto holds = [&](const std::string& what, std::uint64_t size) {
+    return what + " holds " + std::to_string(size) + " bytes, byteLength says " + std::to_string(length);
+  };
+  if (uri.starts_with("data:")) {
+    if (!known_data_uri(uri)) refuse(place + ".uri", shown(uri.substr(0, 40)) + " is not a supported data URI");
+    const std::uint64_t size = decoded_length(uri);
+    if (size != length) refuse(place, holds("its data URI", size));
+    return;
+  }
+  const fs::path path = checked_path(uri, place + ".uri");
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(path, error);
+  if (error) throw io_error(path.string(), error.message());
+  if (size < length) refuse(place, holds(shown(uri), size));
+  if (!wanted_.emplace(path, length).second && wanted_[path] != length) {
+    refuse(place, shown(uri) + " is used by two buffers of different byteLength");
+  }
+}
+
+void SceneFolder::refuse(const std::string& place, const std::string& reason) const {
+  throw input_error(scene_path_ + ": " + place, reason);
 }
 
 bool SceneFolder::holds(const std::string& path) const {

@@ -27,6 +27,8 @@ class SceneFolder {
   [[nodiscard]] std::vector<std::uint8_t> read(const std::string& path);
 
  private:
+  [[noreturn]] void refuse(const std::string& place, const std::string& reason) const;
+  void check_buffer_uri(const std::string& uri, std::uint64_t length, const std::string& place);
   std::filesystem::path checked_path(const std::string& uri, const std::string& place) const;
   std::vector<std::uint8_t> read_bounded(const std::filesystem::path& path, std::uint64_t most);
 

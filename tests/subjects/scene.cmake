@@ -1,1 +1,6 @@
 # SPDX-License-Identifier: MIT
+sheaf_test(gltf_loader_test sheaf_scene)
+sheaf_test(gltf_malformed_test sheaf_scene)
+sheaf_test(gltf_file_test sheaf_scene)
+sheaf_test(pose_test sheaf_scene)
+sheaf_test(camera_path_test sheaf_scene)

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Files that are wrong as files: no JSON, cut short, leading out of their folder, images that are none.
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "gltf_builder.hpp"
+#include "scene/gltf_loader.hpp"
+
+namespace sheaf {
+namespace {
+
+using namespace test;
+
+void expect_refused(const std::string& bytes, const std::string& expected) {
+  const TempFolder folder;
+  try {
+    (void)load_gltf(folder.write("scene.glb", bytes));
+    FAIL() << "was loaded, expected: " << expected;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+  }
+}
+
+TEST(MalformedFile, NotJson) {
+  expect_refused("", "is empty");
+  expect_refused("{", "is not valid JSON");
+  expect_refused("[]", "document: must be an object");
+  expect_refused("\x89PNG", "is not valid JSON");
+  expect_refused("{\"asset\": 1e999}", "is not valid JSON");
+  expect_refused(std::string(1'000'000, '['), "nests deeper");
+  expect_refused("{\"extras\":" + std::string(500, '[') + std::string(500, ']') + "}", "nests deeper");
+}
+
+// Every truncation of a .glb, and every single byte of its headers set to 0xff.
+TEST(MalformedFile, GlbCutAndSpoilt) {
+  GltfBuilder b = whole_document();
+  const std::string whole = b.glb();
+  const TempFolder folder;
+  for (std::size_t size = 4; size < whole.size(); size += 1 + size / 40) {
+    EXPECT_THROW((void)load_gltf(folder.write("cut.glb", whole.substr(0, size))), Error) << size;
+  }
+  for (std::size_t at = 4; at < 20; ++at) {
+    std::string spoilt = whole;
+    spoilt[at] = '\xff';
+    EXPECT_THROW((void)load_gltf(folder.write("spoilt.glb", spoilt)), Error) << at;
+  }
+}
+
+TEST(MalformedFile, LinksOutOfTheFolderAreRefused) {
+  const TempFolder outside, inside;
+  GltfBuilder b = whole_document();
+  (void)outside.write("data.bin", std::string(b.bytes.begin(), b.bytes.end()));
+  std::filesystem::create_symlink(outside.path() / "data.bin", inside.path() / "data.bin");
+  b.doc["buffers"] = {{{"byteLength", b.bytes.size()}, {"uri", "data.bin"}}};
+  try {
+    (void)load_gltf(inside.write("scene.gltf", b.doc.dump()));
+    FAIL() << "was loaded";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("leaves the scene's folder"), std::string::npos) << error.what();
+  }
+}
+
+TEST(MalformedFile, MissingSceneIsAnIoError) {
+  try {
+    (void)load_gltf("/nonexistent/scene.gltf");
+    FAIL() << "was loaded";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+  }
+}
+
+// Images are looked at before they are decoded, and other formats are refused by name.
+TEST(MalformedFile, Images) {
+  const auto refused = [](const std::string& bytes, const std::string& expected) {
+    GltfBuilder b = whole_document();
+    b.add("images", {{"bufferView", b.view(std::vector<char>(bytes.begin(), bytes.end()))}, {"mimeType", "image/png"}});
+    b.add("textures", {{"source", 0}});
+    b.doc["materials"][0]["normalTexture"] = {{"index", 0}};
+    expect_refused(b.text(), expected);
+  };
+  refused("\xabKTX 20\xbb\r\n\x1a\n", "images[0]: KTX2 images are not supported");
+  refused("RIFF....WEBPVP8 ", "images[0]: WebP images are not supported");
+  refused("\x89PNG\r\n\x1a\n", "images[0]: is not a valid PNG");
+  refused("nothing at all", "images[0]: unknown images are not supported");
+}
+
+}  // namespace
+}  // namespace sheaf
