@@ -93,6 +93,17 @@ TEST(CameraPath, LoopsWrapTime) {
   expect_near(eye_at(path, 1.5 - 2 * 3), {0.5, 0, 0});
 }
 
+TEST(CameraPath, AClosedLoopHasNoCornerAtItsSeam) {
+  const CameraPath path = parse(at(0, "[0,0,0]") + "," + at(1, "[1,0,0]") + "," + at(2, "[1,1,0]") + "," +
+                                    at(3, "[0,1,0]") + "," + at(4, "[0,0,0]"),
+                                R"("interpolation":"catmull-rom","loop":true,)");
+  const double step = 1e-5;
+  const glm::dvec3 before = (eye_at(path, 4 - step) - eye_at(path, 4 - 2 * step)) / step;
+  const glm::dvec3 after = (eye_at(path, 4 + 2 * step) - eye_at(path, 4 + step)) / step;
+  expect_near(before, after, 1e-3);
+  expect_near(after, {0.5, -0.5, 0}, 1e-3);  // half of the way from (0,1) to (1,0)
+}
+
 TEST(CameraPath, Lenses) {
   const double forty = 40 * pi / 180;
   EXPECT_NEAR(view_at(parse(at(0, "[0,0,0]", "[0,0,0,1]", R"(,"fov_degrees":40)")), 0, 2).tan_half_y,
