@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "http/client_stream.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "http/problem.hpp"
+
+namespace sheaf::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// False at the deadline.
+bool wait_for(int fd, short events, Clock::time_point deadline) {
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return false;
+    pollfd entry{fd, events, 0};
+    const int n = ::poll(&entry, 1, static_cast<int>(std::min<long long>(left, 60'000)));
+    if (n > 0) return true;
+    if (n < 0 && errno != EINTR) return false;
+  }
+}
+
+}  // namespace
+
+std::size_t ClientStream::receive(char* into, std::size_t size, Clock::time_point deadline) {
+  while (true) {
+    const ssize_t n = ::recv(socket_.get(), into, size, MSG_DONTWAIT);
+    if (n >= 0) return static_cast<std::size_t>(n);
+    if (errno == EINTR) continue;
+    if (errno != EAGAIN && errno != EWOULDBLOCK) return 0;  // reset: as good as ended
+    if (!wait_for(socket_.get(), POLLIN, deadline))
+      throw Problem(ProblemKind::request_timeout, "no further bytes of the request came in time");
+  }
+}
+
+std::optional<RequestHead> ClientStream::read_head() {
+  const auto deadline = Clock::now() + timeouts_.head;
+  std::size_t searched = 0;
+  while (true) {
+    while (buffer_.starts_with("\r\n")) buffer_.erase(0, 2);  // RFC 9112, 2.2: stray line ends before a request
+    const auto end = buffer_.find("\r\n\r\n", searched);
+    if (end != std::string::npos && end + 4 <= limits_.bytes) {
+      const std::string text = buffer_.substr(0, end + 4);
+      buffer_.erase(0, end + 4);
+      return parse_request_head(text, limits_);
+    }
+    if (buffer_.size() >= limits_.bytes)
+      throw Problem(ProblemKind::headers_too_large,
+                    "the request head has more than " + std::to_string(limits_.bytes) + " bytes");
+    searched = buffer_.size() < 3 ? 0 : buffer_.size() - 3;
+    char block[4096];
+    const std::size_t n = receive(block, sizeof block, deadline);
+    if (n == 0) return std::nullopt;
+    buffer_.append(block, n);
+  }
+}
+
+void ClientStream::begin(const RequestHead& head, std::uint64_t body_limit) {
+  shown_ = head.method + " / HTTP/1." + (head.http_1_0 ? "0" : "1") + "\r\n";
+  if (!head.keep_alive) shown_ += "Connection: close\r\n";
+  shown_ += "\r\n";
+  continue_due_ = head.expects_continue;
+  body_.emplace(head, body_limit, [this](char* into, std::size_t size) { return take(into, size); });
+}
+
+std::size_t ClientStream::take(char* into, std::size_t size) {
+  if (continue_due_) {
+    continue_due_ = false;
+    write("HTTP/1.1 100 Continue\r\n\r\n");
+  }
+  if (buffer_.empty()) {
+    if (size >= 4096) return receive(into, size, Clock::now() + timeouts_.read);
+    buffer_.resize(4096);
+    std::size_t n = 0;
+    try {
+      n = receive(buffer_.data(), buffer_.size(), Clock::now() + timeouts_.read);
+    } catch (...) {
+      buffer_.clear();
+      throw;
+    }
+    buffer_.resize(n);
+  }
+  const std::size_t n = std::min(size, buffer_.size());
+  std::memcpy(into, buffer_.data(), n);
+  buffer_.erase(0, n);
+  return n;
+}
+
+std::size_t ClientStream::read_body(char* into, std::size_t size) { return body_ ? body_->read(into, size) : 0; }
+
+ssize_t ClientStream::read(char* into, size_t size) {
+  const std::size_t n = std::min(size, shown_.size());
+  std::memcpy(into, shown_.data(), n);
+  shown_.erase(0, n);
+  return static_cast<ssize_t>(n);
+}
+
+bool ClientStream::is_writable() const {
+  return !failed_ && wait_for(socket_.get(), POLLOUT, Clock::now() + timeouts_.write);
+}
+
+ssize_t ClientStream::write(const char* bytes, size_t size) {
+  while (!failed_) {
+    const ssize_t n = ::send(socket_.get(), bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n >= 0) return n;
+    if (errno == EINTR) continue;
+    if ((errno != EAGAIN && errno != EWOULDBLOCK) || !is_writable()) failed_ = true;
+  }
+  return -1;
+}
+
+void ClientStream::close_gently() {
+  ::shutdown(socket_.get(), SHUT_WR);
+  const auto deadline = Clock::now() + std::chrono::seconds(1);
+  char block[16384];
+  std::uint64_t discarded = 0;
+  while (discarded < (std::uint64_t{8} << 20) && wait_for(socket_.get(), POLLIN, deadline)) {
+    const ssize_t n = ::recv(socket_.get(), block, sizeof block, MSG_DONTWAIT);
+    if (n <= 0) return;
+    discarded += static_cast<std::uint64_t>(n);
+  }
+}
+
+}  // namespace sheaf::server

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "http/exchange.hpp"
+
+#include <new>
+
+#include "util/log.hpp"
+
+namespace sheaf::server {
+namespace {
+
+// The library runs a request on the thread that asked for it, so the thread tells which request it is.
+thread_local const ExchangeScope::Answer* current = nullptr;
+
+Reply problem_reply(const Problem& problem, const std::string& instance) {
+  Reply reply;
+  reply.status = problem.status();
+  reply.content_type = "application/problem+json";
+  reply.body = problem.body(instance).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  reply.headers = problem.headers();
+  reply.header("Cache-Control", "no-store");
+  return reply;
+}
+
+Reply failure_reply(const Request& request, const std::string& reason) {
+  write_log(LogLevel::error, "request failed", {{"request", request.id}, {"path", request.path}, {"reason", reason}});
+  return problem_reply(Problem(ProblemKind::internal, "the reason is in the service's log under request " + request.id),
+                       request.path);
+}
+
+/// One call of the library's provider sends everything. A body that ends early must not look whole: saying false
+/// makes the library drop the connection.
+void fill_stream(httplib::Response& response, StreamBody body, const std::string& type, bool chunked) {
+  const auto produce = [body](httplib::DataSink& sink) {
+    return body.produce([&sink](std::string_view bytes) { return sink.write(bytes.data(), bytes.size()); });
+  };
+  if (body.length) {
+    const std::uint64_t length = *body.length;
+    response.set_content_provider(static_cast<std::size_t>(length), type,
+                                  [produce, length](std::size_t offset, std::size_t left, httplib::DataSink& sink) {
+                                    return offset == 0 && left == length && produce(sink);
+                                  });
+    return;
+  }
+  const auto provider = [produce](std::size_t, httplib::DataSink& sink) {
+    if (!produce(sink)) return false;
+    sink.done();
+    return true;
+  };
+  if (chunked)
+    response.set_chunked_content_provider(type, provider);
+  else
+    response.set_content_provider(type, provider);
+}
+
+}  // namespace
+
+ExchangeScope::ExchangeScope(Answer answer) : answer_(std::move(answer)) { current = &answer_; }
+ExchangeScope::~ExchangeScope() { current = nullptr; }
+
+void install_exchange(httplib::Server& server) {
+  server.set_pre_routing_handler([](const httplib::Request&, httplib::Response& response) {
+    (*current)(response);
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  server.set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+    response.headers.erase("Keep-Alive");  // the library's own idea of it, not ours
+    if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
+  });
+}
+
+Reply guarded(Request& request, const std::function<Reply(Request&)>& handler) {
+  try {
+    return handler(request);
+  } catch (const Problem& problem) {
+    return problem_reply(problem, request.path);
+  } catch (const Error& error) {
+    return problem_reply(problem_of(error), request.path);
+  } catch (const std::exception& error) {
+    return failure_reply(request, error.what());
+  }
+}
+
+void fill(httplib::Response& response, Reply reply, const RequestHead& head) {
+  response.status = reply.status;
+  for (const auto& [name, value] : reply.headers) response.set_header(name, value);
+  response.set_header("X-Content-Type-Options", "nosniff");
+  // The library would promise ranges on HEAD that the routes do not give.
+  if (!find_header(reply.headers, "Accept-Ranges")) response.set_header("Accept-Ranges", "none");
+  if (reply.stream && reply.stream->length.value_or(1) > 0)
+    fill_stream(response, std::move(*reply.stream), reply.content_type, !head.http_1_0);
+  else if (!reply.body.empty())
+    response.set_content(reply.body, reply.content_type);
+}
+
+std::string plain_refusal(const Problem& problem) {
+  const std::string body = problem.body("").dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return "HTTP/1.1 " + std::to_string(problem.status()) +
+         " Refused\r\nContent-Type: application/problem+json\r\nConnection: close\r\nContent-Length: " +
+         std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+}  // namespace sheaf::server

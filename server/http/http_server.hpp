@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Connections to threads. Idle keep-alive connections wait in epoll and cost no thread; a connection takes a thread
+// from the pool while it sends a request and is sent the reply. Replies that last (event streams) therefore hold a
+// thread each: the service bounds them below the pool's size. cpp-httplib runs the exchange and writes the reply.
+#pragma once
+
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "http/client_stream.hpp"
+#include "http/message.hpp"
+
+namespace sheaf::server {
+
+struct HttpOptions {
+  std::size_t threads = 32;
+  std::size_t max_connections = 900;  // below the usual limit of 1024 open files
+  std::uint64_t max_body = std::uint64_t{1} << 30;
+  std::chrono::seconds keep_alive{75};  // how long an idle connection may wait for its next request
+  std::chrono::seconds drain{3};        // how long replies may go on once stop() was called
+  StreamTimeouts timeouts;
+  HeadLimits head;
+};
+
+/// What is told about each finished exchange.
+struct ExchangeRecord {
+  std::string id, method, path;
+  int status = 0;
+  std::chrono::duration<double> seconds{0};
+};
+
+class HttpServer : private httplib::Server {
+ public:
+  using Handler = std::function<Reply(Request&)>;
+  using Observer = std::function<void(const ExchangeRecord&)>;
+
+  /// `handler` may throw Problem, sheaf::Error or anything else: each becomes problem+json.
+  HttpServer(HttpOptions options, Handler handler, Observer observer);
+  ~HttpServer() override;
+
+  /// Port 0: any free one. Returns "host:port" as bound; throws Error{io}.
+  std::string bind(const std::string& host, const std::string& port);
+
+  /// Serves until stop(); then no new connection is taken, replies under way get `drain` to end.
+  void run();
+  void stop();
+  [[nodiscard]] std::size_t connections() const { return open_.load(); }
+
+ private:
+  struct Connection {
+    explicit Connection(Fd socket, const HttpOptions& options)
+        : stream(std::move(socket), options.timeouts, options.head) {}
+    ClientStream stream;
+    std::chrono::steady_clock::time_point idle_since = std::chrono::steady_clock::now();
+  };
+  using ConnectionPtr = std::unique_ptr<Connection>;
+
+  void accept_clients();
+  void wake_connection(int fd);
+  void close_idle(std::chrono::steady_clock::time_point before);
+  void park(ConnectionPtr connection);
+  void work();
+  void serve(ConnectionPtr connection);
+  bool serve_one(ClientStream& stream);
+  void answer(const RequestHead& head, ClientStream& stream, httplib::Response& response, ExchangeRecord& record);
+  bool refuse_head(ClientStream& stream, const class Problem& problem);
+  void shutdown_sockets(int how);
+
+  HttpOptions options_;
+  Handler handler_;
+  Observer observer_;
+  Fd listener_, epoll_, wake_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::size_t> open_{0};
+
+  std::mutex mutex_;
+  std::condition_variable ready_, drained_;
+  std::map<int, ConnectionPtr> idle_;
+  std::deque<ConnectionPtr> waiting_;
+  std::map<int, Connection*> busy_;
+  bool closed_ = false;  // workers end when nothing waits
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace sheaf::server

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Requests and replies as the routes see them, apart from any HTTP library.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace sheaf::server {
+
+using Headers = std::vector<std::pair<std::string, std::string>>;  // in order of arrival; names as they came
+
+/// First header of that name, whatever its case.
+[[nodiscard]] std::optional<std::string> find_header(const Headers& headers, std::string_view name);
+[[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+struct Request {
+  std::string method, path;  // path: percent-decoded, without the query
+  std::vector<std::pair<std::string, std::string>> query;
+  Headers headers;
+  std::map<std::string, std::string> parameters;  // the route's placeholders
+  std::string id;                                 // this request's, for the log
+
+  /// Next bytes of the body, at most `size`; 0 at its end. Throws Problem: too slow, cut off, malformed, too large.
+  std::function<std::size_t(char* into, std::size_t size)> read_body;
+
+  [[nodiscard]] std::optional<std::string> header(std::string_view name) const { return find_header(headers, name); }
+  [[nodiscard]] std::optional<std::string> argument(std::string_view name) const;
+
+  /// Throws Problem (400) for any query key that is not among `names`, or that is given twice.
+  void allow_arguments(std::initializer_list<std::string_view> names) const;
+};
+
+/// Takes the next bytes of a body; false: the client is gone, stop.
+using Writer = std::function<bool(std::string_view bytes)>;
+
+/// A body that is made while it is sent. Returns false to break the connection off, so that the client notices.
+struct StreamBody {
+  std::optional<std::uint64_t> length;  // chunked without it
+  std::function<bool(const Writer& write)> produce;
+};
+
+struct Reply {
+  int status = 200;
+  Headers headers;
+  std::string content_type;
+  std::string body;
+  std::optional<StreamBody> stream;
+
+  Reply& header(std::string name, std::string value) {
+    headers.emplace_back(std::move(name), std::move(value));
+    return *this;
+  }
+};
+
+[[nodiscard]] Reply json_reply(int status, const nlohmann::ordered_json& body);
+[[nodiscard]] Reply text_reply(std::string content_type, std::string body);
+
+}  // namespace sheaf::server

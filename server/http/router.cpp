@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "http/router.hpp"
+
+#include <set>
+
+#include "http/problem.hpp"
+
+namespace sheaf::server {
+namespace {
+
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> segments;
+  for (std::size_t at = 1; at <= path.size();) {
+    const auto end = std::min(path.find('/', at), path.size());
+    segments.push_back(path.substr(at, end - at));
+    at = end + 1;
+  }
+  return segments;
+}
+
+}  // namespace
+
+void Router::add(const std::string& method, const std::string& pattern, RouteHandler handler) {
+  Route route{method, pattern, {}, std::move(handler)};
+  for (const std::string& text : split_path(pattern)) {
+    const auto open = text.find('{');
+    const auto close = text.find('}');
+    if (open == std::string::npos)
+      route.segments.push_back({text, "", ""});
+    else
+      route.segments.push_back({text.substr(0, open), text.substr(open + 1, close - open - 1), text.substr(close + 1)});
+  }
+  routes_.push_back(std::move(route));
+}
+
+bool Router::matches(const Route& route, const std::vector<std::string>& segments,
+                     std::map<std::string, std::string>& parameters) {
+  if (route.segments.size() != segments.size()) return false;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& want = route.segments[i];
+    const std::string& have = segments[i];
+    if (want.name.empty()) {
+      if (have != want.before) return false;
+      continue;
+    }
+    if (have.size() <= want.before.size() + want.after.size() || !have.starts_with(want.before) ||
+        !have.ends_with(want.after))
+      return false;
+    parameters[want.name] = have.substr(want.before.size(), have.size() - want.before.size() - want.after.size());
+  }
+  return true;
+}
+
+Reply Router::dispatch(Request& request) const {
+  const std::vector<std::string> segments = split_path(request.path);
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
+  std::set<std::string> allowed;
+  for (const Route& route : routes_) {
+    std::map<std::string, std::string> parameters;
+    if (!matches(route, segments, parameters)) continue;
+    if (route.method == method) {
+      request.parameters = std::move(parameters);
+      return route.handler(request);
+    }
+    allowed.insert(route.method);
+    if (route.method == "GET") allowed.insert("HEAD");
+  }
+  if (allowed.empty()) throw Problem(ProblemKind::unknown_route, "nothing is at " + request.path);
+
+  allowed.insert("OPTIONS");
+  std::string list;
+  for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
+  if (request.method == "OPTIONS") {
+    Reply reply;
+    reply.status = 204;
+    return reply.header("Allow", list);
+  }
+  throw Problem(ProblemKind::method_not_allowed, request.method + " is not allowed at " + request.path)
+      .header("Allow", list);
+}
+
+std::vector<std::string> Router::routes() const {
+  std::vector<std::string> names;
+  for (const Route& route : routes_) names.push_back(route.method + " " + route.pattern);
+  return names;
+}
+
+}  // namespace sheaf::server

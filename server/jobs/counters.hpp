@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "jobs/job.hpp"
+
+namespace sheaf::server {
+
+/// What has happened since the start; only ever grows.
+struct Counters {
+  std::atomic<std::uint64_t> jobs_accepted{0}, frames_rendered{0};
+  std::array<std::atomic<std::uint64_t>, 5> jobs_ended{};  // by JobState
+
+  void ended(JobState state) { ++jobs_ended[static_cast<std::size_t>(state)]; }
+};
+
+}  // namespace sheaf::server

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "jobs/event_log.hpp"
+
+#include <algorithm>
+
+namespace sheaf::server {
+
+void EventLog::append(const std::string& type, nlohmann::ordered_json data) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return;
+    events_.push_back({events_.size() + 1, type, std::move(data), std::chrono::system_clock::now()});
+  }
+  changed_.notify_all();
+}
+
+void EventLog::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+void EventLog::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    interrupted_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool EventLog::interrupted() const {
+  const std::lock_guard lock(mutex_);
+  return interrupted_;
+}
+
+EventLog::Batch EventLog::read_locked(std::uint64_t after, std::size_t most) const {
+  Batch batch;
+  const std::size_t first = static_cast<std::size_t>(std::min<std::uint64_t>(after, events_.size()));
+  const std::size_t last = std::min(events_.size(), first + most);
+  batch.events.assign(events_.begin() + static_cast<std::ptrdiff_t>(first),
+                      events_.begin() + static_cast<std::ptrdiff_t>(last));
+  batch.ended = closed_ && last == events_.size();
+  return batch;
+}
+
+EventLog::Batch EventLog::read(std::uint64_t after, std::size_t most) const {
+  const std::lock_guard lock(mutex_);
+  return read_locked(after, most);
+}
+
+EventLog::Batch EventLog::wait(std::uint64_t after, std::size_t most,
+                               std::chrono::steady_clock::time_point deadline) const {
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, deadline, [&] { return closed_ || interrupted_ || events_.size() > after; });
+  return read_locked(after, most);
+}
+
+}  // namespace sheaf::server

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// One job through one worker process: the command line, the worker's events into the job, the end into a state.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "jobs/counters.hpp"
+#include "jobs/job_files.hpp"
+#include "jobs/job_store.hpp"
+#include "jobs/limits.hpp"
+#include "jobs/worker_process.hpp"
+
+namespace sheaf::server {
+
+struct RunnerOptions {
+  std::string sheaf;                           // the worker's program
+  std::chrono::milliseconds grace{5000};       // from SIGTERM to SIGKILL
+  std::chrono::seconds retention{7 * 86'400};  // a finished job's stay; 0: for ever
+  std::uint64_t log_bytes = Limits{}.log_bytes;
+};
+
+class JobRunner {
+ public:
+  JobRunner(RunnerOptions options, JobStore& store, const JobFiles& files, Counters& counters)
+      : options_(std::move(options)), store_(store), files_(files), counters_(counters) {}
+
+  /// Runs a queued job to its end; does nothing for one that is not queued any more. Never throws.
+  void run(const std::string& id, const StopSwitch& stop) const noexcept;
+
+  [[nodiscard]] const RunnerOptions& options() const { return options_; }
+
+ private:
+  [[nodiscard]] std::vector<std::string> command_of(const Job& job) const;
+  void run_started(const Job& job, const StopSwitch& stop) const;
+  void conclude(const std::string& id, const struct Outcome& outcome) const;
+
+  RunnerOptions options_;
+  JobStore& store_;
+  const JobFiles& files_;
+  Counters& counters_;
+};
+
+/// Sets the end's state, times and expiry, tells the watchers, closes the event log.
+void finish_job(Job& job, EventLog& events, JobState state, std::optional<Failure> failure,
+                std::chrono::seconds retention);
+
+}  // namespace sheaf::server

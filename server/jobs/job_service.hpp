@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// What the routes can do with jobs: submit, look, cancel, remove, watch; and what happens by itself: running, expiry.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "jobs/job_files.hpp"
+#include "jobs/job_queue.hpp"
+#include "jobs/job_runner.hpp"
+#include "jobs/job_store.hpp"
+#include "jobs/limits.hpp"
+
+namespace sheaf::server {
+
+struct ServiceOptions {
+  RunnerOptions runner;
+  Limits limits;
+  std::size_t jobs_at_once = 1;
+  std::uint64_t least_free_bytes = std::uint64_t{256} << 20;  // no new job is taken with less disk than this
+};
+
+class JobService {
+ public:
+  JobService(ServiceOptions options, JobStore& store, const JobFiles& files);
+  ~JobService();
+  JobService(const JobService&) = delete;
+  JobService& operator=(const JobService&) = delete;
+
+  /// Throws Problem (503) if no job can be taken now: asked before an upload is read, and again at its end.
+  void check_capacity() const;
+
+  /// Takes an upload that was received under `job.id`. On `repeated` and `conflict` the upload is thrown away.
+  Submitted submit(Job job, const Idempotency& idempotency);
+
+  /// Throws Problem: 404, or 410 for a job that was there.
+  [[nodiscard]] Job get(const std::string& id) const;
+  [[nodiscard]] std::shared_ptr<EventLog> events(const std::string& id) const;
+
+  /// Unfinished: asks it to stop and returns the job as it is now. Finished, or asked before: removes it and returns
+  /// nothing. Throws Problem: 404, 410.
+  std::optional<Job> cancel_or_remove(const std::string& id);
+
+  /// Takes no more jobs, lets watchers go, stops the workers.
+  void shut_down();
+
+  [[nodiscard]] const JobStore& store() const { return store_; }
+  [[nodiscard]] const JobFiles& files() const { return files_; }
+  [[nodiscard]] const JobQueue& queue() const { return *queue_; }
+  [[nodiscard]] const ServiceOptions& options() const { return options_; }
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] bool stopping() const { return stopping_; }
+
+ private:
+  [[noreturn]] void refuse_missing(const std::string& id) const;
+  void remove(const std::string& id);
+  void worker_gone(const std::string& id);
+  void remove_expired();
+
+  ServiceOptions options_;
+  JobStore& store_;
+  const JobFiles& files_;
+  Counters counters_;
+  JobRunner runner_;
+  std::atomic<bool> stopping_{false};
+  std::mutex mutex_;
+  std::condition_variable stopped_;
+  std::unique_ptr<JobQueue> queue_;
+  std::thread janitor_;
+};
+
+}  // namespace sheaf::server

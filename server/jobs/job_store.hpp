@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Where jobs are kept. The service uses nothing but this interface, so that what is behind it can outlive the process.
+// Every call is atomic and safe from any thread.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "jobs/event_log.hpp"
+#include "jobs/job.hpp"
+
+namespace sheaf::server {
+
+struct Idempotency {
+  std::string key;          // empty: none
+  std::string fingerprint;  // of the request's meaning
+};
+
+struct Submitted {
+  enum class Kind { created, repeated, conflict } kind = Kind::created;
+  std::string id;  // the new job's, or the earlier one's under the same key
+};
+
+struct JobQuery {
+  std::optional<JobState> state;
+  std::optional<std::uint64_t> before;  // sequence: only older ones
+  std::size_t limit = 50;
+};
+
+struct JobPage {
+  std::vector<JobSummary> jobs;       // newest first
+  std::optional<std::uint64_t> next;  // where the following page starts
+};
+
+enum class Presence { unknown, present, removed };
+
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  /// Adds `job` under its id and gives it a sequence, unless the key names an earlier job that is still there.
+  virtual Submitted insert(Job job, const Idempotency& idempotency) = 0;
+
+  [[nodiscard]] virtual std::optional<Job> find(const std::string& id) const = 0;
+  [[nodiscard]] virtual Presence presence(const std::string& id) const = 0;
+  [[nodiscard]] virtual JobPage list(const JobQuery& query) const = 0;
+  [[nodiscard]] virtual std::map<JobState, std::uint64_t> count() const = 0;
+
+  /// Runs `change` on the job under the store's lock; false if it is not there. `change` may add to `events`.
+  using Change = std::function<void(Job& job, EventLog& events)>;
+  virtual bool update(const std::string& id, const Change& change) = 0;
+
+  /// The job's events: shared, and still readable after the job was removed.
+  [[nodiscard]] virtual std::shared_ptr<EventLog> events(const std::string& id) const = 0;
+
+  /// Takes the job out and remembers that it was there. False if it is not there.
+  virtual bool remove(const std::string& id) = 0;
+
+  /// Jobs whose time is over at `now`.
+  [[nodiscard]] virtual std::vector<std::string> expired(WallTime now) const = 0;
+
+  /// Lets everybody who waits for events go: the service stops.
+  virtual void interrupt_waits() = 0;
+};
+
+}  // namespace sheaf::server

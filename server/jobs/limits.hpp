@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace sheaf::server {
+
+/// What one request or job may ask for. Passing one is answered with the limit and the value.
+struct Limits {
+  std::uint64_t upload_bytes = std::uint64_t{1} << 30;    // a whole request body
+  std::uint64_t settings_bytes = std::uint64_t{1} << 20;  // the settings part
+  std::uint64_t camera_bytes = std::uint64_t{16} << 20;   // the camera part
+  std::uint64_t parts = 1024;                             // of a multipart body
+  std::uint64_t unpacked_bytes = std::uint64_t{4} << 30;  // everything out of a .zip
+  std::uint64_t zip_entries = 4096;
+  std::uint64_t zip_ratio = 200;  // unpacked to packed; DEFLATE can reach 1032
+  std::uint64_t frames = 10'000;
+  std::uint64_t pixels = std::uint64_t{1} << 26;  // of a frame: 8192 × 8192
+  std::uint64_t spp = 4096;
+  std::uint64_t depth = 64;
+  std::uint64_t memory_mib = 65'536;
+  std::uint64_t queued_jobs = 1000;
+  std::uint64_t log_bytes = std::uint64_t{4} << 20;  // kept of a worker's log
+};
+
+}  // namespace sheaf::server

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "jobs/outcome.hpp"
+
+#include <csignal>
+
+namespace sheaf::server {
+namespace {
+
+struct Row {
+  const char *code, *title;
+};
+
+Row row_of(int exit_code) {
+  switch (exit_code) {
+    case 2:
+      return {"worker-usage", "The worker did not understand its command line"};
+    case 3:
+      return {"bad-scene", "The scene, camera path or settings are bad"};
+    case 4:
+      return {"device", "There is no usable device, or it was lost"};
+    case 5:
+      return {"limit-exceeded", "A limit was exceeded"};
+    case 6:
+      return {"storage", "Reading or writing failed"};
+    case 128 + SIGINT:
+    case 128 + SIGTERM:
+      return {"interrupted", "The worker was interrupted"};
+    default:
+      return {"worker-failed", "The worker failed"};
+  }
+}
+
+Failure failure(Row row, const std::string& message) { return {row.code, row.title, message, {}, {}}; }
+
+}  // namespace
+
+Outcome outcome_of(const Ending& ending) {
+  // Whatever a worker did after it was told to stop, the client asked for this end.
+  if (ending.cancel_requested) return {JobState::cancelled, std::nullopt};
+
+  if (ending.worker.signal) {
+    const int number = *ending.worker.signal;
+    Failure reason = failure({"worker-crashed", "The worker crashed"},
+                             "worker ended by signal " + std::to_string(number) + " (" + signal_name(number) + ")");
+    reason.signal = number;
+    return {JobState::failed, reason};
+  }
+  const int code = ending.worker.exit_code.value_or(-1);
+  if (code == 0 && ending.missing == 0) return {JobState::done, std::nullopt};
+  if (code == 0) {
+    Failure reason = failure({"incomplete", "The worker left frames out"},
+                             "the worker ended well, but " + std::to_string(ending.missing) + " frames are not there");
+    reason.exit_code = code;
+    return {JobState::failed, reason};
+  }
+  Failure reason = failure(
+      row_of(code), ending.message.empty() ? "worker ended with exit code " + std::to_string(code) : ending.message);
+  reason.exit_code = code;
+  return {JobState::failed, reason};
+}
+
+Outcome outcome_of_no_start(const std::string& reason) {
+  return {JobState::failed, failure({"worker-missing", "The worker could not be started"}, reason)};
+}
+
+}  // namespace sheaf::server

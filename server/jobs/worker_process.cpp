@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "jobs/worker_process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/eventfd.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+#include "core/error.hpp"
+
+extern char** environ;
+
+namespace sheaf::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t max_line = 64 * 1024;
+constexpr auto reap_interval = std::chrono::milliseconds(100);  // while the pipes stay open after the exit
+constexpr auto leftover_time = std::chrono::milliseconds(500);  // for output that is still in the pipes then
+
+struct Pipe {
+  Fd read, write;
+};
+
+Pipe make_pipe() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
+  Pipe pipe{Fd(ends[0]), Fd(ends[1])};
+  ::fcntl(pipe.read.get(), F_SETFL, O_NONBLOCK);  // the worker's end stays blocking
+  return pipe;
+}
+
+/// stdin from /dev/null, no descriptor of the service, default signals, a group of its own.
+pid_t spawn(const std::vector<std::string>& command, const Fd& out, const Fd& err) {
+  std::vector<char*> arguments;
+  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_adddup2(&actions, out.get(), STDOUT_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, err.get(), STDERR_FILENO);
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+  sigset_t none, all;
+  ::sigemptyset(&none);
+  ::sigfillset(&all);
+  ::posix_spawnattr_setsigmask(&attributes, &none);
+  ::posix_spawnattr_setsigdefault(&attributes, &all);
+  ::posix_spawnattr_setpgroup(&attributes, 0);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+  pid_t pid = 0;
+  const int error = ::posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw io_error(command[0], std::string("cannot be started: ") + std::strerror(error));
+  return pid;
+}
+
+class Worker {
+ public:
+  Worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
+         std::chrono::milliseconds grace)
+      : output_(output), stop_(stop), grace_(grace) {
+    Pipe out = make_pipe(), err = make_pipe();
+    pid_ = spawn(command, out.write, err.write);
+    out_ = std::move(out.read);
+    err_ = std::move(err.read);
+  }
+  ~Worker() {
+    if (reaped_) return;
+    ::kill(-pid_, SIGKILL);
+    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  WorkerEnding run() {
+    while (!exited()) {
+      obey();
+      wait_for_output(Clock::now() + reap_interval);
+    }
+    // The leader is not reaped yet, so its group's number is still its own: nobody else is hit.
+    ::kill(-pid_, SIGKILL);
+    const WorkerEnding ending = reap();
+    for (const auto end = Clock::now() + leftover_time; (out_.valid() || err_.valid()) && Clock::now() < end;)
+      wait_for_output(end);
+    if (!line_.empty()) output_.line(line_);
+    return ending;
+  }
+
+ private:
+  [[nodiscard]] bool exited() const {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
+  }
+
+  WorkerEnding reap() {
+    int status = 0;
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    reaped_ = true;
+    if (WIFSIGNALED(status)) return {std::nullopt, WTERMSIG(status)};
+    return {WEXITSTATUS(status), std::nullopt};
+  }
+
+  void obey() {
+    if (stop_.asked() && !kill_at_) {
+      ::kill(-pid_, SIGTERM);
+      kill_at_ = Clock::now() + grace_;
+    }
+    if (kill_at_ && (stop_.forced() || Clock::now() >= *kill_at_)) ::kill(-pid_, SIGKILL);
+  }
+
+  void wait_for_output(Clock::time_point until) {
+    const bool watch_stop = !reaped_ && !stop_.forced() && !(kill_at_ && stop_.asked());
+    std::array<pollfd, 3> entries{pollfd{out_.get(), POLLIN, 0}, pollfd{err_.get(), POLLIN, 0},
+                                  pollfd{watch_stop ? stop_.fd() : -1, POLLIN, 0}};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    // With both pipes closed only the exit is awaited, and most often it is near.
+    const bool soon = !out_.valid() && !err_.valid() && ++waits_for_exit_ < 20;
+    const long long most = soon ? std::min<long long>(left, 5) : left;
+    if (::poll(entries.data(), entries.size(), static_cast<int>(std::max<long long>(most, 0))) <= 0) return;
+    if (entries[0].revents) drain(out_, [this](std::string_view bytes) { take_lines(bytes); });
+    if (entries[1].revents) drain(err_, output_.log);
+  }
+
+  /// One block, so that a worker that floods one pipe does not keep the other or the stop switch waiting.
+  template <typename Take>
+  static void drain(Fd& fd, const Take& take) {
+    std::array<char, 64 * 1024> block;
+    const ssize_t n = ::read(fd.get(), block.data(), block.size());
+    if (n > 0)
+      take(std::string_view(block.data(), static_cast<std::size_t>(n)));
+    else if (n == 0 || (errno != EAGAIN && errno != EINTR))
+      fd.reset();
+  }
+
+  void take_lines(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const auto end = bytes.find('\n');
+      line_.append(bytes.substr(0, end));
+      bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + 1);
+      if (end == std::string_view::npos && line_.size() < max_line) return;
+      output_.line(line_);
+      line_.clear();
+    }
+  }
+
+  const WorkerOutput& output_;
+  const StopSwitch& stop_;
+  std::chrono::milliseconds grace_;
+  pid_t pid_ = 0;
+  bool reaped_ = false;
+  int waits_for_exit_ = 0;
+  Fd out_, err_;
+  std::string line_;
+  std::optional<Clock::time_point> kill_at_;
+};
+
+}  // namespace
+
+StopSwitch::StopSwitch() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!event_.valid()) throw io_error("eventfd", std::strerror(errno));
+}
+
+void StopSwitch::raise_to(int level) {
+  for (int now = level_; now < level && !level_.compare_exchange_weak(now, level);) {
+  }
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t n = ::write(event_.get(), &one, sizeof one);
+}
+
+void StopSwitch::ask() { raise_to(1); }
+void StopSwitch::force() { raise_to(2); }
+
+WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
+                        std::chrono::milliseconds grace) {
+  return Worker(command, output, stop, grace).run();
+}
+
+std::string signal_name(int number) {
+  const char* const name = ::sigabbrev_np(number);
+  return name ? std::string("SIG") + name : "signal " + std::to_string(number);
+}
+
+}  // namespace sheaf::server

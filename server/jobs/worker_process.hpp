@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A worker: a program in its own process group whose standard output is read line by line and whose standard error is
+// a log. Whatever it does (crash, hang, flood, leave children behind), run() ends in bounded time once it was told to
+// stop, and nothing of the group is left.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "util/fd.hpp"
+
+namespace sheaf::server {
+
+/// Tells a running worker to stop. Safe from any thread, before, while and after it runs.
+class StopSwitch {
+ public:
+  StopSwitch();
+  void ask();    // SIGTERM, and SIGKILL after the grace period
+  void force();  // SIGKILL
+  [[nodiscard]] bool asked() const { return level_ > 0; }
+  [[nodiscard]] bool forced() const { return level_ > 1; }
+  [[nodiscard]] int fd() const { return event_.get(); }  // readable once the switch was used
+
+ private:
+  void raise_to(int level);
+  Fd event_;
+  std::atomic<int> level_{0};
+};
+
+struct WorkerEnding {
+  std::optional<int> exit_code, signal;  // one of them
+};
+
+struct WorkerOutput {
+  std::function<void(std::string_view line)> line;  // of stdout, without its end; a line too long comes in pieces
+  std::function<void(std::string_view bytes)> log;  // of stderr
+};
+
+/// Throws Error{io} if the program cannot be started.
+[[nodiscard]] WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output,
+                                      const StopSwitch& stop, std::chrono::milliseconds grace);
+
+/// "SIGSEGV", or "signal 64".
+[[nodiscard]] std::string signal_name(int number);
+
+}  // namespace sheaf::server

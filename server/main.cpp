@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "service.hpp"
+#include "util/log.hpp"
+
+namespace {
+
+/// Connections and files are many; the usual soft limit is 1024.
+void raise_file_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+int serve(const sheaf::server::ProgramOptions& options, const sigset_t& stop_signals) {
+  using namespace sheaf::server;
+  Service service(options);
+  const std::string address = service.bind();
+  if (!options.port_file.empty()) sheaf::write_file_atomically(options.port_file, address + "\n");
+  write_log(LogLevel::info, "listening", {{"address", address}, {"worker", options.service.runner.sheaf}});
+
+  std::thread stopper([&] {
+    int signal = 0;
+    ::sigwait(&stop_signals, &signal);
+    write_log(LogLevel::info, "stopping", {{"signal", signal_name(signal)}});
+    service.stop();
+  });
+  service.run();
+  stopper.join();
+  write_log(LogLevel::info, "stopped");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Blocked before the first thread starts, so that only the thread that waits for them gets them.
+  sigset_t stop_signals;
+  ::sigemptyset(&stop_signals);
+  ::sigaddset(&stop_signals, SIGTERM);
+  ::sigaddset(&stop_signals, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  raise_file_limit();
+  try {
+    std::string help;
+    const auto options = sheaf::server::parse_options(argc, argv, help);
+    if (!help.empty()) {
+      std::fputs(help.c_str(), stdout);
+      return 0;
+    }
+    return serve(options, stop_signals);
+  } catch (const sheaf::Error& error) {
+    std::fprintf(stderr, "sheafd: %s\n", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sheafd: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "options.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "core/error.hpp"
+
+namespace sheaf::server {
+namespace {
+
+/// The engine installed beside this program, else whatever the PATH has.
+std::string default_worker() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return "sheaf";
+  for (const auto& beside : {self.parent_path() / "sheaf", self.parent_path().parent_path() / "engine" / "sheaf"})
+    if (::access(beside.c_str(), X_OK) == 0 && std::filesystem::is_regular_file(beside, error)) return beside.string();
+  return "sheaf";
+}
+
+/// Limits in the units that people give them in.
+struct Given {
+  std::string listen = "127.0.0.1:8080";
+  std::uint64_t upload_mib = Limits{}.upload_bytes >> 20, unpacked_mib = Limits{}.unpacked_bytes >> 20;
+  std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256;
+  double grace_s = 5, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30, head_timeout_s = 10;
+};
+
+void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
+  Limits& limits = options.service.limits;
+  const auto limit = [&](const char* name, auto& value, const char* what) {
+    app.add_option(name, value, what)->capture_default_str()->check(CLI::PositiveNumber)->group("Limits");
+  };
+  limit("--max-upload", given.upload_mib, "MiB of a whole request");
+  limit("--max-unpacked", given.unpacked_mib, "MiB out of a .zip");
+  limit("--max-zip-entries", limits.zip_entries, "entries of a .zip");
+  limit("--max-zip-ratio", limits.zip_ratio, "unpacked to packed size");
+  limit("--max-parts", limits.parts, "parts of a multipart body");
+  limit("--max-frames", limits.frames, "frames of a job");
+  limit("--max-pixels", limits.pixels, "pixels of a frame");
+  limit("--max-spp", limits.spp, "samples a pixel");
+  limit("--max-depth", limits.depth, "depth of reflection and refraction");
+  limit("--max-memory", limits.memory_mib, "MiB of a job's memory budget");
+  limit("--max-queue", limits.queued_jobs, "jobs that wait");
+  limit("--max-log", given.log_kib, "KiB kept of a worker's log");
+  limit("--max-connections", options.http.max_connections, "open connections");
+  limit("--max-streams", options.streams, "clients that wait for events; each holds a thread, so fewer than those");
+  limit("--http-threads", options.http.threads, "threads that answer requests");
+  app.add_option("--min-free", given.free_mib, "MiB of free disk below which no job is taken")
+      ->capture_default_str()
+      ->group("Limits");
+}
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+}
+
+void apply(const Given& given, ProgramOptions& options) {
+  Limits& limits = options.service.limits;
+  limits.upload_bytes = given.upload_mib << 20;
+  limits.unpacked_bytes = given.unpacked_mib << 20;
+  limits.log_bytes = given.log_kib << 10;
+  options.http.max_body = limits.upload_bytes;
+  options.http.timeouts.read = milliseconds(given.read_timeout_s);
+  options.http.timeouts.write = milliseconds(given.read_timeout_s);
+  options.http.timeouts.head = milliseconds(given.head_timeout_s);
+  options.heartbeat = milliseconds(given.heartbeat_s);
+  options.service.least_free_bytes = given.free_mib << 20;
+  options.service.runner.log_bytes = limits.log_bytes;
+  options.service.runner.grace = milliseconds(given.grace_s);
+  options.service.runner.retention = std::chrono::seconds(
+      given.retention_h > 0 ? std::max<std::int64_t>(1, std::llround(given.retention_h * 3600)) : 0);
+  split_address(given.listen, options.host, options.port);
+  if (options.streams >= options.http.threads)
+    throw Error(ErrorKind::usage, "--max-streams " + std::to_string(options.streams) +
+                                      ": must be below --http-threads " + std::to_string(options.http.threads));
+}
+
+}  // namespace
+
+void split_address(const std::string& text, std::string& host, std::string& port) {
+  const auto colon = text.rfind(':');
+  const bool bracketed = text.starts_with('[');
+  if (colon == std::string::npos || (bracketed && (colon < 2 || text[colon - 1] != ']')))
+    throw Error(ErrorKind::usage, "--listen '" + text + "': must be HOST:PORT");
+  host = bracketed ? text.substr(1, colon - 2) : text.substr(0, colon);
+  port = text.substr(colon + 1);
+  const bool digits =
+      !port.empty() && port.size() <= 5 && std::ranges::all_of(port, [](char c) { return c >= '0' && c <= '9'; });
+  if (!digits || std::stoi(port) > 65535)
+    throw Error(ErrorKind::usage, "--listen '" + text + "': the port is not 0 to 65535");
+}
+
+ProgramOptions parse_options(int argc, const char* const* argv, std::string& help) {
+  ProgramOptions options;
+  Given given;
+  options.service.runner.sheaf = default_worker();
+  CLI::App app("Renders glTF animations sent over HTTP, each job in a sheaf process of its own.", "sheafd");
+  app.set_version_flag("--version", "sheafd " SHEAF_VERSION);
+  app.add_option("--listen", given.listen, "HOST:PORT; port 0: any free one")->capture_default_str();
+  app.add_option("--data", options.data, "folder for jobs and their files; without it one that is removed at the end");
+  app.add_option("--sheaf", options.service.runner.sheaf, "the worker's program")->capture_default_str();
+  app.add_option("--jobs", options.service.jobs_at_once, "workers at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
+  app.add_option("--port-file", options.port_file, "file that is given the bound address once the service listens");
+  app.add_option("--retention", given.retention_h, "hours that a finished job is kept; 0: for ever")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--grace", given.grace_s, "seconds from SIGTERM to SIGKILL for a worker that is to stop")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--heartbeat", given.heartbeat_s, "seconds between comments on an idle event stream")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--io-timeout", given.read_timeout_s, "seconds a client may pause in a body it sends or is sent")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--head-timeout", given.head_timeout_s, "seconds for a request's head")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  add_limits(app, given, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) throw Error(ErrorKind::usage, error.what());
+    std::ostringstream out, ignored;
+    app.exit(error, out, ignored);
+    help = out.str();
+    return options;
+  }
+  apply(given, options);
+  return options;
+}
+
+}  // namespace sheaf::server

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The HTTP interface: every route, thin over the job service. Each group stands in its own file.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "http/router.hpp"
+#include "jobs/job_service.hpp"
+#include "routes/metrics.hpp"
+#include "routes/readiness.hpp"
+#include "routes/stream_slots.hpp"
+
+namespace sheaf::server {
+
+struct RouteContext {
+  JobService& service;
+  StreamSlots& streams;
+  Metrics& metrics;
+  const DeviceProbe& device;
+  std::function<std::size_t()> connections;     // open now
+  std::chrono::milliseconds heartbeat{15'000};  // between comments on an idle event stream
+};
+
+/// `context` outlives the router.
+void add_job_routes(Router& router, RouteContext& context);      // submit, list, look, cancel, remove
+void add_event_routes(Router& router, RouteContext& context);    // event stream and long poll
+void add_result_routes(Router& router, RouteContext& context);   // frames, archive, stats, log
+void add_service_routes(Router& router, RouteContext& context);  // health, readiness, metrics, contract, page
+
+/// What every request passes: the routes, with a page of another site kept from submitting or removing jobs.
+[[nodiscard]] Reply handle(const Router& router, Request& request);
+
+}  // namespace sheaf::server

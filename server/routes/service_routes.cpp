@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "http/problem.hpp"
+#include "routes/resources.hpp"
+#include "routes/routes.hpp"
+
+namespace sheaf::server {
+namespace {
+
+Reply health(RouteContext&, Request&) { return json_reply(200, {{"status", "alive"}, {"version", SHEAF_VERSION}}); }
+
+/// Device, disk and queue, each "ok" or the reason why no job should be sent here.
+Reply readiness(RouteContext& context, Request&) {
+  const DeviceProbe::Result device = context.device.result();
+  std::string capacity = "ok";
+  ProblemKind kind = ProblemKind::not_ready;
+  try {
+    context.service.check_capacity();
+  } catch (const Problem& problem) {
+    capacity = problem.detail();
+    kind = problem.kind();
+  }
+  const bool disk_low = kind == ProblemKind::storage;
+  const nlohmann::ordered_json checks{{"device", device.ready ? "ok" : device.reason},
+                                      {"disk", disk_low ? capacity : "ok"},
+                                      {"queue", disk_low ? "ok" : capacity}};
+  if (device.ready && capacity == "ok") return json_reply(200, {{"status", "ready"}, {"checks", checks}});
+  throw Problem(ProblemKind::not_ready, device.ready ? capacity : "device: " + device.reason)
+      .header("Retry-After", "10")
+      .member("checks", checks);
+}
+
+Reply metrics(RouteContext& context, Request&) {
+  return text_reply("text/plain; version=0.0.4; charset=utf-8",
+                    context.metrics.text(context.service, context.streams.used(), context.connections()));
+}
+
+Reply contract(RouteContext&, Request&) { return text_reply("application/json", openapi_json); }
+
+Reply page(RouteContext&, Request&) {
+  Reply reply = text_reply("text/html; charset=utf-8", index_html);
+  return reply.header("Content-Security-Policy",
+                      "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'; "
+                      "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+}
+
+}  // namespace
+
+void add_service_routes(Router& router, RouteContext& context) {
+  const auto get = [&](const std::string& path, Reply (*handler)(RouteContext&, Request&)) {
+    router.add("GET", path, [&context, handler](Request& request) {
+      request.allow_arguments({});
+      return handler(context, request);
+    });
+  };
+  get("/healthz", health);
+  get("/readyz", readiness);
+  get("/metrics", metrics);
+  get("/openapi.json", contract);
+  get("/", page);
+}
+
+}  // namespace sheaf::server

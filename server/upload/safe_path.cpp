@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "upload/safe_path.hpp"
+
+#include <algorithm>
+
+#include "http/problem.hpp"
+
+namespace sheaf::server {
+namespace {
+
+constexpr std::size_t max_path = 1024, max_part = 255, max_depth = 16;
+
+[[noreturn]] void refuse(std::string_view given, const std::string& why) {
+  throw Problem(ProblemKind::bad_scene, "file name '" + std::string(given.substr(0, 200)) + "': " + why);
+}
+
+}  // namespace
+
+std::filesystem::path safe_relative_path(std::string_view given) {
+  if (given.empty()) refuse(given, "is empty");
+  if (given.size() > max_path) refuse(given, "has more than 1024 bytes");
+  if (given.front() == '/') refuse(given, "is absolute");
+  std::filesystem::path path;
+  std::size_t depth = 0;
+  for (std::size_t at = 0; at <= given.size();) {
+    const auto end = std::min(given.find('/', at), given.size());
+    const std::string_view part = given.substr(at, end - at);
+    if (part.empty()) refuse(given, "has an empty part");
+    if (part == "." || part == "..") refuse(given, "has a part '" + std::string(part) + "'");
+    if (part.size() > max_part) refuse(given, "has a part of more than 255 bytes");
+    if (++depth > max_depth) refuse(given, "is deeper than 16 folders");
+    if (std::ranges::any_of(part, [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127 || c == '\\'; }))
+      refuse(given, "holds a backslash or control character");
+    path /= part;
+    at = end + 1;
+  }
+  return path;
+}
+
+std::string base_name(std::string_view given) {
+  const auto slash = given.find_last_of("/\\");
+  return std::string(slash == std::string_view::npos ? given : given.substr(slash + 1));
+}
+
+std::string extension_of(std::string_view name) {
+  const auto dot = name.rfind('.');
+  if (dot == std::string_view::npos) return {};
+  std::string extension(name.substr(dot));
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  return extension;
+}
+
+}  // namespace sheaf::server

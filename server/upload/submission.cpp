@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "upload/submission.hpp"
+
+#include <array>
+#include <vector>
+
+#include "http/problem.hpp"
+#include "jobs/settings.hpp"
+#include "upload/multipart.hpp"
+#include "upload/new_file.hpp"
+#include "upload/safe_path.hpp"
+#include "upload/unzip.hpp"
+#include "util/sha256.hpp"
+
+namespace sheaf::server {
+namespace {
+
+[[noreturn]] void bad_scene(const std::string& why) { throw Problem(ProblemKind::bad_scene, why); }
+
+/// A scene's file name, from what the client calls it or, failing that, from its media type.
+std::string scene_name(const PartHeader& part) {
+  std::string name = base_name(part.filename.value_or(""));
+  if (extension_of(name).empty()) {
+    const std::string stem = name.empty() ? "scene" : name;
+    if (part.content_type == "model/gltf-binary") name = stem + ".glb";
+    if (part.content_type == "model/gltf+json") name = stem + ".gltf";
+    if (part.content_type == "application/zip") name = stem + ".zip";
+  }
+  const std::string extension = extension_of(name);
+  if (extension != ".glb" && extension != ".gltf" && extension != ".zip")
+    throw Problem(ProblemKind::unsupported_media_type,
+                  "scene: '" + (name.empty() ? part.content_type : name) + "' is not .glb, .gltf or .zip");
+  return safe_relative_path(name).string();
+}
+
+class Receiver {
+ public:
+  Receiver(std::filesystem::path folder, const Limits& limits) : folder_(std::move(folder)), limits_(limits) {}
+
+  void begin(const PartHeader& part) {
+    part_ = part;
+    part_hash_ = Sha256();
+    text_.clear();
+    if (part.name == "scene") {
+      if (!scene_name_.empty()) twice();
+      scene_name_ = scene_name(part);
+      const bool zip = extension_of(scene_name_) == ".zip";
+      file_.emplace(zip ? folder_ : folder_ / "scene", zip ? "upload.zip" : scene_name_);
+    } else if (part.name == "file") {
+      if (!part.filename) throw Problem(ProblemKind::malformed_multipart, "part 'file' has no file name");
+      file_.emplace(folder_ / "scene", safe_relative_path(*part.filename));
+    } else if (part.name == "camera") {
+      if (camera_) twice();
+      text_limit_ = limits_.camera_bytes;
+    } else if (part.name == "settings") {
+      if (settings_) twice();
+      text_limit_ = limits_.settings_bytes;
+    } else {
+      throw Problem(ProblemKind::malformed_multipart,
+                    "part '" + part.name.substr(0, 100) + "' is not one of scene, file, camera, settings");
+    }
+  }
+
+  void data(std::string_view bytes) {
+    part_hash_.update(bytes);
+    if (part_.name == "scene" && magic_.size() < 4) magic_.append(bytes.substr(0, 4 - magic_.size()));
+    if (file_) return file_->write(bytes);
+    if (text_.size() + bytes.size() > text_limit_)
+      throw Problem(ProblemKind::too_large, part_.name + ": has more than " + std::to_string(text_limit_) + " bytes")
+          .member("limit", text_limit_);
+    text_.append(bytes);
+  }
+
+  void end() {
+    fingerprint_.update(part_.name + '\0' + part_.filename.value_or("") + '\0' + part_hash_.finish() + '\n');
+    if (file_) {
+      file_->close();
+      total_bytes_ += file_->bytes();
+      has_files_ = has_files_ || part_.name == "file";
+      file_.reset();
+    } else if (part_.name == "camera") {
+      camera_ = std::move(text_);
+    } else {
+      settings_ = std::move(text_);
+    }
+  }
+
+  Submission finish(const std::string& id) {
+    Submission submission;
+    Job& job = submission.job;
+    job.id = id;
+    job.created = std::chrono::system_clock::now();
+    job.scene_bytes = total_bytes_;
+    job.has_camera = camera_.has_value();
+    const Settings settings = parse_settings(json_of("settings", settings_.value_or("{}")), job.has_camera, limits_);
+    job.settings = settings.resolved;
+    job.arguments = settings.arguments;
+    if (settings.frames) {
+      job.frames_known = true;
+      job.total = settings.frames->size();
+      for (const std::int64_t number : *settings.frames) job.frames.push_back({number, {}, {}, 0});
+    }
+    save_camera();
+    job.scene_file = unpack_scene();
+    submission.fingerprint = fingerprint_.finish();
+    return submission;
+  }
+
+ private:
+  [[noreturn]] void twice() const {
+    throw Problem(ProblemKind::malformed_multipart, "part '" + part_.name + "' is given twice");
+  }
+
+  static nlohmann::json json_of(const std::string& what, const std::string& text) {
+    try {
+      return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::exception& error) {
+      throw Problem(ProblemKind::malformed_json, what + ": " + error.what());
+    }
+  }
+
+  void save_camera() const {
+    if (!camera_) return;
+    if (!json_of("camera", *camera_).is_object())
+      throw Problem(ProblemKind::bad_settings, "camera: must be a JSON object");
+    NewFile file(folder_, "camera.json");
+    file.write(*camera_);
+    file.close();
+  }
+
+  /// The scene's path within the scene folder. Only the first bytes are looked at: the worker judges the rest.
+  std::string unpack_scene() {
+    if (scene_name_.empty()) bad_scene("there is no scene part");
+    const std::string extension = extension_of(scene_name_);
+    if (extension == ".glb" && magic_ != "glTF") bad_scene("scene: '" + scene_name_ + "' is not a binary glTF file");
+    if (extension == ".gltf" && magic_.empty()) bad_scene("scene: '" + scene_name_ + "' is empty");
+    if (extension != ".zip") return scene_name_;
+    if (has_files_) bad_scene("file: parts beside a .zip scene are not taken");
+    const auto archive = folder_ / "upload.zip";
+    const std::string name = unzip_scene(archive, folder_ / "scene", limits_);
+    std::filesystem::remove(archive);
+    return name;
+  }
+
+  std::filesystem::path folder_;
+  const Limits& limits_;
+  PartHeader part_;
+  Sha256 part_hash_, fingerprint_;
+  std::optional<NewFile> file_;
+  std::string scene_name_, magic_, text_;
+  std::uint64_t text_limit_ = 0, total_bytes_ = 0;
+  std::optional<std::string> camera_, settings_;
+  bool has_files_ = false;
+};
+
+}  // namespace
+
+Submission receive_submission(const std::string& id, Request& request, const JobFiles& files, const Limits& limits) {
+  const auto boundary = multipart_boundary(request.header("Content-Type").value_or(""));
+  if (!boundary) throw Problem(ProblemKind::unsupported_media_type, "the body must be multipart/form-data");
+  try {
+    Receiver receiver(files.receive(id), limits);
+    MultipartParser parser(*boundary, limits.parts,
+                           {[&](const PartHeader& part) { receiver.begin(part); },
+                            [&](std::string_view bytes) { receiver.data(bytes); }, [&] { receiver.end(); }});
+    std::vector<char> block(std::size_t{1} << 16);
+    for (std::size_t n = 0; (n = request.read_body(block.data(), block.size())) > 0;) parser.feed({block.data(), n});
+    parser.finish();
+    return receiver.finish(id);
+  } catch (...) {
+    files.remove(id);
+    throw;
+  }
+}
+
+}  // namespace sheaf::server

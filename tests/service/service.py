@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""A running `sheafd` and the few things tests do with it over and over."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import signal
+import socket
+import struct
+import subprocess
+import threading
+from collections.abc import Iterator
+
+import httpx
+
+HERE = pathlib.Path(__file__).resolve().parent
+BUILD = pathlib.Path(os.environ.get("SHEAF_BUILD", HERE / "../../build")).resolve()
+FAKE = HERE / "fake_sheaf.py"
+PATIENCE = 60  # seconds until a test gives up; nothing waits this long when all is well
+
+
+def program(name: str) -> pathlib.Path:
+    for place in (BUILD / name, BUILD / "engine" / name, BUILD / "server" / name):
+        if place.is_file():
+            return place
+    raise AssertionError(f"{name} is not built: looked in {BUILD} (set SHEAF_BUILD)")
+
+
+class Service:
+    """`sheafd` on a port of the system's choice; its log is kept for a test that fails."""
+
+    def __init__(self, data: pathlib.Path, *options: str, sheaf: pathlib.Path = FAKE, env: dict[str, str] | None = None):
+        self.data = data
+        self.process = subprocess.Popen(
+            [program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, "--min-free", "0", *options],
+            stderr=subprocess.PIPE, text=True, env={**os.environ, **(env or {})})
+        self.log: list[dict] = []
+        self._listening = threading.Event()
+        self._reader = threading.Thread(target=self._read_log, daemon=True)
+        self._reader.start()
+        assert self._listening.wait(PATIENCE) and self.log, "sheafd did not start"
+        self.address = next(entry["address"] for entry in self.log if entry["message"] == "listening")
+        self.url = "http://" + self.address
+        self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
+
+    def _read_log(self) -> None:
+        assert self.process.stderr
+        for line in self.process.stderr:
+            self.log.append(json.loads(line) if line.startswith("{") else {"message": line})
+            if self.log[-1]["message"] == "listening":
+                self._listening.set()
+        self._listening.set()
+
+    def stop(self) -> int:
+        """SIGTERM and its exit code."""
+        self.http.close()
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(PATIENCE)
+        self._reader.join(PATIENCE)
+        assert self.process.stderr
+        self.process.stderr.close()
+        return code
+
+    def submit(self, scene: bytes, settings: dict | None = None, name: str = "scene.gltf", headers: dict | None = None,
+               parts: list | None = None) -> httpx.Response:
+        files = [("scene", (name, scene)), *(parts or [])]
+        if settings is not None:
+            files.append(("settings", (None, json.dumps(settings))))
+        return self.http.post("/v1/jobs", files=files, headers=headers)
+
+    def accepted(self, *args: object, **kwargs: object) -> str:
+        """Submits and returns the job's id."""
+        reply = self.submit(*args, **kwargs)  # type: ignore[arg-type]
+        assert reply.status_code == 202, reply.text
+        return reply.json()["id"]
+
+    def job(self, job: str) -> dict:
+        reply = self.http.get(f"/v1/jobs/{job}")
+        assert reply.status_code == 200, reply.text
+        return reply.json()
+
+    def events(self, job: str) -> Iterator[dict]:
+        """Events by long poll until the job has ended."""
+        after, ended = 0, False
+        while not ended:
+            page = self.http.get(f"/v1/jobs/{job}/events", params={"wait": 30, "after": after}).json()
+            yield from page["events"]
+            after, ended = page["last"], page["ended"]
+
+    def wait(self, job: str, state: str | None = None) -> dict:
+        """The job once it has ended, or first comes to `state`."""
+        for event in self.events(job):
+            if event["event"] == "state" and event["data"]["state"] == state:
+                break
+        return self.job(job)
+
+    def wait_for_frame(self, job: str, frame: int) -> None:
+        for event in self.events(job):
+            if event["event"] == "frame" and event["data"]["frame"] == frame:
+                return
+        raise AssertionError(f"job {job} ended without frame {frame}")
+
+    def raw(self, request: bytes, *, half_close: bool = False) -> bytes:
+        """What comes back for bytes sent as they are, until the service closes."""
+        host, port = self.address.rsplit(":", 1)
+        with socket.create_connection((host, int(port)), PATIENCE) as connection:
+            connection.sendall(request)
+            if half_close:
+                connection.shutdown(socket.SHUT_WR)
+            answer = b""
+            while block := connection.recv(65536):
+                answer += block
+            return answer
+
+
+def gltf(**fake: object) -> bytes:
+    """A scene that tells the fake worker how to behave."""
+    return json.dumps({"asset": {"version": "2.0"}, "extras": {"fake": fake}}).encode()
+
+
+def glb(**fake: object) -> bytes:
+    text = gltf(**fake)
+    text += b" " * (-len(text) % 4)
+    return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+def check_problem(reply: httpx.Response, status: int, slug: str) -> dict:
+    """The reply is this problem, whole and well-formed; returns it."""
+    assert reply.status_code == status, reply.text
+    assert reply.headers["Content-Type"] == "application/problem+json"
+    problem = reply.json()
+    assert problem["type"] == "urn:sheaf:problem:" + slug, problem
+    assert problem["status"] == status
+    assert all(problem[member] for member in ("title", "detail", "instance"))
+    return problem
