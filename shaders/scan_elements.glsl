@@ -47,6 +47,7 @@ void scan_total(uint total) {
   counters[COUNT_SORT] = sorted ? 1u : 0u;
   set_args(ARGS_CHUNKS, sorted ? groups_of(total, SCAN_BLOCK) : 0u);
   set_args(ARGS_SORTED, sorted ? groups_of(rays, SCAN_BLOCK) : 0u);
+  set_args(ARGS_SORT_SPINE, sorted ? 1u : 0u);
 }
 #elif defined(SCAN_STARTS)
 // Sizes of the sorted chunks → where each starts; its base is set into the skeleton as a head (R 4.2, Decompression).
@@ -76,18 +77,18 @@ uint scan_load(uint i) { return survivors[i]; }
 void scan_store(uint i, uint before, uint own) {
   if (own != 0u) pairs_next[before] = pairs[i];
 }
-void scan_total(uint total) { counters[COUNT_PAIRS + 8u] = total; }
+void scan_total(uint total) { counters[COUNT_SURVIVORS] = total; }
 #elif defined(SCAN_LOOSE)
 // Bundles too wide to be walked as one → a list of their rays, and the rest → a list of bundles.
 BUFFER(ROLE_BUNDLE_FLAGS, readonly, uint, bundle_flags);
-BUFFER(ROLE_WORK, writeonly, uint, work);  // loose bundles from the front, tight ones from the back
+BUFFER(ROLE_WORK, writeonly, uint, work);  // loose bundles, then, past the number of all bundles, tight ones
 uint scan_count() { return groups_of(counters[COUNT_RAYS + push.kind], BUNDLE); }
 uint scan_load(uint i) { return bundle_flags[i]; }
 void scan_store(uint i, uint before, uint own) {
   if (own != 0u)
     work[before] = i;
   else
-    work[frame.capacity - 1u - (i - before)] = i;
+    work[scan_count() + i - before] = i;
 }
 void scan_total(uint total) {
   uint bundles = scan_count();

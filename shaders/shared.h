@@ -102,6 +102,7 @@ SHEAF_CONST COUNT_PAIRS = 11u;        // pairs that survived a level
 SHEAF_CONST COUNT_TIGHT = 12u;        // bundles fit for traversal as a whole
 SHEAF_CONST COUNT_LOOSE = 13u;        // rays that go one a lane
 SHEAF_CONST COUNT_SORT = 14u;         // 1: the batch is worth sorting
+SHEAF_CONST COUNT_SURVIVORS = 15u;    // of a batch of pairs
 SHEAF_CONST COUNT_BOUNDS = 16u;       // 6 words: ordered-integer bounds of the batch's origins
 SHEAF_CONST COUNT_WORDS = 32u;
 
@@ -132,7 +133,10 @@ SHEAF_CONST ARGS_TIGHT = 8u;      // one workgroup a tight bundle
 SHEAF_CONST ARGS_ONE = 9u;        // a single workgroup, or nothing when the list is empty
 SHEAF_CONST ARGS_PARENTS_REFRACTION = 10u;
 SHEAF_CONST ARGS_SLOTS_SHADOW = 11u;
-SHEAF_CONST ARGS_COUNT = 12u;
+SHEAF_CONST ARGS_BUNDLE_RUNS = 12u;   // one invocation a bundle
+SHEAF_CONST ARGS_BUNDLE_BLOCKS = 13u;  // one workgroup a scan block of the bundles
+SHEAF_CONST ARGS_SORT_SPINE = 14u;     // a single workgroup, or nothing when the batch is not sorted
+SHEAF_CONST ARGS_COUNT = 15u;
 
 SHEAF_CONST GROUP = 64u;          // invocations of a plain workgroup
 SHEAF_CONST SCAN_GROUP = 32u;     // invocations of a scan workgroup …
@@ -153,8 +157,9 @@ SHEAF_CONST CHILD_EMPTY = 0xFFFFFFFFu;
 SHEAF_CONST CHILD_LEAF = 0x80000000u;  // bits 27..30 count − 1, bits 0..26 first triangle
 SHEAF_CONST STACK_SIZE = 128u;         // ≥ 7 · depth + 1 for two stacked trees of depth ≤ 9 each in practice; checked on the host
 
-// Nodes of the ray hierarchy: 8 words (R 4.3).
-SHEAF_CONST RAY_NODE_WORDS = 8u;
+// Nodes of the ray hierarchy: sphere of the origins (centre, radius), cone of the directions (axis, half-angle): the 8 floats
+// of R 4.3; and the largest far limit, so that shadow rays end at their light.
+SHEAF_CONST RAY_NODE_WORDS = 9u;
 
 SHEAF_CONST MATERIAL_MASK = 1u;
 SHEAF_CONST MATERIAL_BLEND = 2u;

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: MIT
 # The table of shader variants: name, source, defines.
-sheaf_shader(animate_triangles animate_triangles.comp)
-sheaf_shader(animate_vertices animate_vertices.comp)
-sheaf_shader(objects_refit objects_refit.comp)
+foreach(stem animate_vertices animate_triangles objects_refit objects_spheres generate_primary generate_begin generate
+             hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill rays_hierarchy
+             rays_hierarchy_bundles traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
+             resolve)
+  sheaf_shader(${stem} ${stem}.comp)
+endforeach()
 sheaf_shader(raster_vert raster.vert)
 sheaf_shader(raster_frag raster.frag)
-sheaf_shader(generate_primary generate_primary.comp)
-sheaf_shader(generate_begin generate_begin.comp)
-sheaf_shader(generate generate.comp)
-sheaf_shader(shade shade.comp)
-sheaf_shader(resolve resolve.comp)
-sheaf_shader(traverse_single traverse_single.comp)
-foreach(scan COMPACT)
+
+# One scan, many elements: scan_elements.glsl says what each scans.
+foreach(scan COMPACT COMPRESS STARTS SEGMENTED PAIRS LOOSE PLAIN PLAIN_SEGMENTED)
   string(TOLOWER ${scan} stem)
   sheaf_shader(${stem}_reduce scan_reduce.comp SCAN_${scan})
   sheaf_shader(${stem}_spine scan_spine.comp SCAN_${scan})

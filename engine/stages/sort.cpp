@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "stages/sort.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace sheaf {
+
+KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays) {
+  const auto log2 = static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(rays, 1)));
+  KeyLayout layout;
+  if (kind == gpu::KIND_SHADOW) {
+    layout.light_bits = std::min<std::uint32_t>(static_cast<std::uint32_t>(std::bit_width(lights - 1)), 12);
+    layout.direction_bits = std::clamp((log2 + 1) / 2, 4U, std::min(10U, (32 - layout.light_bits) / 2));
+  } else {
+    layout.origin_bits = 5;
+    layout.direction_bits = 4;
+  }
+  return layout;
+}
+
+SortRays::SortRays(const TraceContext& context) {
+  const Device& device = context.device;
+  const SpecConstant group{0, gpu::SCAN_GROUP};
+  auto run_kernel = [&](const char* stem) { return Kernel(device, stem, {&group, 1}); };
+  bounds_ = run_kernel("hash_bounds");
+  hash_ = Kernel(device, "hash");
+  sizes_ = run_kernel("compress_sizes");
+  count_ = run_kernel("sort_count");
+  spine_ = run_kernel("sort_spine");
+  scatter_ = run_kernel("sort_scatter");
+  fill_ = run_kernel("decompress_fill");
+  compress_ = Scan(device, "compress");
+  starts_ = Scan(device, "starts");
+  segmented_ = Scan(device, "segmented");
+}
+
+bool SortRays::record_passes(Recorder& recorder, const RayMemory& memory, std::uint32_t key_bits) const {
+  recorder.bind(ROLE_BLOCK_SUMS, memory.digits);
+  bool in_alt = false;
+  for (std::uint32_t shift = 0; shift < key_bits; shift += gpu::RADIX_BITS, in_alt = !in_alt) {
+    recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
+    recorder.bind(ROLE_CHUNKS_ALT, in_alt ? memory.chunks : memory.chunks_alt);
+    recorder.dispatch_indirect(count_, shift, gpu::ARGS_CHUNKS);
+    recorder.dispatch_indirect(spine_, shift, gpu::ARGS_SORT_SPINE);
+    recorder.dispatch_indirect(scatter_, shift, gpu::ARGS_CHUNKS);
+  }
+  recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
+  recorder.bind(ROLE_BLOCK_SUMS, memory.block_sums);
+  return in_alt;
+}
+
+void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const {
+  const RayMemory& memory = context.memory;
+  const KeyLayout layout = key_layout(kind, context.scene.lights(), memory.tile_pixels);
+  recorder.bind(ROLE_KEYS, memory.keys);
+  recorder.bind(ROLE_CHUNKS, memory.chunks);
+  recorder.bind(ROLE_SKELETON, memory.skeleton);
+  recorder.bind(ROLE_SCAN_OUT, memory.order_kept);
+
+  recorder.stage("hash");
+  struct {
+    std::uint32_t kind, reset;
+  } bounds{kind, 1};
+  recorder.dispatch(bounds_, bounds, 1);
+  bounds.reset = 0;
+  recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_BLOCKS);
+  const struct {
+    std::uint32_t kind, origin_bits, direction_bits, light_bits;
+  } key{kind, layout.origin_bits, layout.direction_bits, layout.light_bits};
+  recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
+
+  recorder.stage("compress");
+  const ScanPush scan{kind, layout.bits(), context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ? 2U : 1U};
+  compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
+  recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
+
+  recorder.stage("sort");
+  (void)record_passes(recorder, memory, layout.bits());
+
+  recorder.stage("decompress");
+  recorder.dispatch_indirect(fill_, kind, gpu::ARGS_SORTED);
+  starts_.record(recorder, scan, gpu::ARGS_CHUNKS);
+  segmented_.record(recorder, scan, gpu::ARGS_SORTED);
+  context.scene.bind(recorder);  // SCAN_OUT was lent to the kept order
+}
+
+}  // namespace sheaf

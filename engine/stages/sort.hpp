@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Hash, compress, sort, decompress (R 4.2, S): brings a list's order into ray space. Whether a batch is worth it is settled on
+// the device from its chunks per ray; a batch that is not keeps its order and skips the later stages.
+#pragma once
+
+#include "stages/scan.hpp"
+#include "stages/tracer.hpp"
+
+namespace sheaf {
+
+struct KeyLayout {
+  std::uint32_t origin_bits = 0, direction_bits = 0, light_bits = 0;
+  [[nodiscard]] std::uint32_t bits() const { return 3 * origin_bits + 2 * direction_bits + light_bits; }
+};
+
+/// As many bits as leave about 16 rays a cell if a batch of `rays` fills half of them; fewer bits are fewer passes.
+[[nodiscard]] KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays);
+
+class SortRays {
+ public:
+  SortRays() = default;
+  explicit SortRays(const TraceContext& context);
+  void record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const;
+  /// The passes alone, over counters[COUNT_CHUNKS] chunks (also for tests). True where the result is in chunks_alt.
+  [[nodiscard]] bool record_passes(Recorder& recorder, const RayMemory& memory, std::uint32_t key_bits) const;
+
+ private:
+  Kernel bounds_, hash_, sizes_, count_, spine_, scatter_, fill_;
+  Scan compress_, starts_, segmented_;
+};
+
+}  // namespace sheaf

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Keys (R 4.2, S): reflection and refraction rays by cell of the origin in a grid over the batch, then cell of the direction;
+// shadow rays by light, then by direction from it (point, spot) or place across it (directional). All along Hilbert curves.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "lists.glsl"
+#include "curves.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_KEYS, writeonly, uint, keys);
+BUFFER(ROLE_LIGHTS, readonly, Light, lights);
+layout(push_constant) uniform Push {
+  uint kind;
+  uint origin_bits;     // an axis
+  uint direction_bits;  // an axis
+  uint light_bits;
+} push;
+
+vec3 batch_place(vec3 o) {  // in [0, 1]³; a batch without extent along an axis has one cell there
+  vec3 lo, hi;
+  for (uint axis = 0u; axis < 3u; ++axis) {
+    lo[axis] = unordered(counters[COUNT_BOUNDS + axis]);
+    hi[axis] = unordered(counters[COUNT_BOUNDS + 3u + axis]);
+  }
+  vec3 size = hi - lo;
+  float largest = max(max(size.x, size.y), max(size.z, 1e-30));  // cubic cells
+  return clamp((o - lo) / largest, 0.0, 1.0);
+}
+
+uint shadow_key(Ray ray, uint light) {
+  uint cell;
+  if (lights[light].kind == LIGHT_DIRECTIONAL) {
+    vec3 d = lights[light].direction;
+    vec3 u = normalize(abs(d.y) < 0.9 ? cross(d, vec3(0, 1, 0)) : cross(d, vec3(1, 0, 0)));
+    vec3 v = cross(d, u);
+    vec3 p = batch_place(ray.origin) - 0.5;
+    vec2 across = vec2(dot(p, u), dot(p, v)) * 0.5774 + 0.5;  // |p| ≤ √3/2
+    cell = hilbert2(uvec2(quantise(across.x, push.direction_bits), quantise(across.y, push.direction_bits)), push.direction_bits);
+  } else {
+    vec2 o = octahedral(ray.direction);
+    cell = hilbert2(uvec2(quantise(o.x, push.direction_bits), quantise(o.y, push.direction_bits)), push.direction_bits);
+  }
+  return push.light_bits == 0u ? cell : ((light & ((1u << push.light_bits) - 1u)) << (2u * push.direction_bits)) | cell;
+}
+
+uint secondary_key(Ray ray) {
+  vec3 p = batch_place(ray.origin);
+  uvec3 c = uvec3(quantise(p.x, push.origin_bits), quantise(p.y, push.origin_bits), quantise(p.z, push.origin_bits));
+  vec2 o = octahedral(ray.direction);
+  uvec2 d = uvec2(quantise(o.x, push.direction_bits), quantise(o.y, push.direction_bits));
+  return (hilbert3(c, push.origin_bits) << (2u * push.direction_bits)) | hilbert2(d, push.direction_bits);
+}
+
+void main() {
+  uint i = global_index();
+  if (i >= counters[COUNT_RAYS + push.kind]) return;
+  uint slot = order[i];
+  Ray ray = LOAD_RAY(rays, slot);
+  keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, floatBitsToUint(RAYS(rays, RAY_MEDIUM, slot))) : secondary_key(ray);
+}

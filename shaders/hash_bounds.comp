@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Bounds of this batch's origins, over which hash lays its grid. Minima and maxima have no order, so neither has the result.
+#define COMPUTE
+#include "common.glsl"
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "rays.glsl"
+#include "lists.glsl"
+#include "curves.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+layout(push_constant) uniform Push { uint kind; uint reset; } push;
+
+void main() {
+  if (push.reset != 0u) {
+    if (gl_LocalInvocationID.x < 6u) counters[COUNT_BOUNDS + gl_LocalInvocationID.x] = gl_LocalInvocationID.x < 3u ? 0xFFFFFFFFu : 0u;
+    return;
+  }
+  uint count = counters[COUNT_RAYS + push.kind];
+  uint block = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
+  for (uint i = block; i < min(block + SCAN_RUN, count); ++i) {
+    uint slot = order[i];
+    vec3 o = vec3(RAYS(rays, RAY_ORIGIN, slot), RAYS(rays, RAY_ORIGIN + 1u, slot), RAYS(rays, RAY_ORIGIN + 2u, slot));
+    lo = min(lo, o);
+    hi = max(hi, o);
+  }
+  lo = subgroupMin(lo);
+  hi = subgroupMax(hi);
+  if (subgroupElect())
+    for (uint axis = 0u; axis < 3u; ++axis) {
+      atomicMin(counters[COUNT_BOUNDS + axis], ordered(lo[axis]));
+      atomicMax(counters[COUNT_BOUNDS + 3u + axis], ordered(hi[axis]));
+    }
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Strategy `brute`: every ray against every triangle, the N × M of R 5.2 and the oracle on the device. In slices of the
+// triangles, so that no dispatch runs for minutes.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "scene.glsl"
+#include "candidate.glsl"
+#include "results.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+layout(constant_id = 1) const bool ANY_HIT = false;
+layout(push_constant) uniform Push {
+  uint kind;
+  uint first;
+  uint last;
+} push;
+
+void main() {
+  uint i = global_index();
+  if (i >= counters[COUNT_RAYS + push.kind]) return;
+  uint slot = order[i];
+  Ray ray = LOAD_RAY(rays, slot);
+  Shear s = make_shear(ray.origin, ray.direction);
+  Nearest best = Nearest(ray.tmax, NO_INDEX);
+  Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+  if (push.first > 0u) {  // go on from the slices before
+    uint64_t found = hits[slot];
+    shade.blocked = found != NO_HIT;
+    if (found != NO_HIT) {
+      best = Nearest(uintBitsToFloat(uint(found >> 32)), uint(found));
+      shade.triangle = best.triangle;
+      shade.t = best.t;
+    }
+    if (ANY_HIT && TRANSLUCENT)
+      for (uint c = 0u; c < 3u; ++c) shade.stops[c] = optical_depth[3u * slot + c];
+  }
+  uint tests = 0u;
+  for (uint t = push.first; t < push.last && !(ANY_HIT && shade.blocked); ++t) {
+    ++tests;
+    if (ANY_HIT)
+      consider_shadow(t, s, ray.direction, ray.tmin, ray.tmax, shade);
+    else
+      consider_nearest(t, s, ray.tmin, best);
+  }
+  if (ANY_HIT)
+    store_shade(slot, shade);
+  else
+    store_nearest(slot, best);
+  count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
+  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), tests);
+}

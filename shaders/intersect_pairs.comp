@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Local intersection tests (R 4.5): what is left is (ray, triangle). Many pairs of one ray run at once; the nearest is a 64-bit
+// minimum of (t, triangle), optical depths are integer sums, so the order of the pairs does not show.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "scene.glsl"
+#include "candidate.glsl"
+#include "results.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
+layout(constant_id = 1) const bool ANY_HIT = false;
+layout(push_constant) uniform Push {
+  uint kind;
+  uint pairs;
+  uint reset;   // 1: mark every ray of the list as without a hit instead
+} push;
+
+void main() {
+  uint i = global_index();
+  if (push.reset != 0u) {
+    if (i >= counters[COUNT_RAYS + push.kind]) return;
+    uint slot = order[i];
+    hits[slot] = NO_HIT;
+    if (ANY_HIT && TRANSLUCENT)
+      for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = 0;
+    return;
+  }
+  if (i >= push.pairs) return;
+  uvec2 pair = pairs[i];
+  uint slot = order[pair.x];
+  uint64_t known = hits[slot];
+  if (ANY_HIT && known != NO_HIT) return;  // blocked already: no test
+  Ray ray = LOAD_RAY(rays, slot);
+  Shear s = make_shear(ray.origin, ray.direction);
+  if (ANY_HIT) {
+    Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+    consider_shadow(pair.y, s, ray.direction, ray.tmin, ray.tmax, shade);
+    if (shade.blocked) atomicMin(hits[slot], pack_hit(shade.t, shade.triangle));
+    if (TRANSLUCENT)
+      for (uint c = 0u; c < 3u; ++c)
+        if (shade.stops[c] != 0) atomicAdd(optical_depth[3u * slot + c], shade.stops[c]);
+  } else {
+    Nearest best = Nearest(ray.tmax, NO_INDEX);
+    consider_nearest(pair.y, s, ray.tmin, best);
+    if (best.triangle != NO_INDEX) atomicMin(hits[slot], pack_hit(best.t, best.triangle));
+  }
+  count_tests(push.kind, STAT_RAY_TRIANGLE, 1u);
+  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), 1u);
+}

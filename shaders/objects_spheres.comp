@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Bounding spheres of the triangles that moved, and of whole instances (C: mesh spheres). Padded by PAD of the radius for its
+// own rounding and by twice box_pad, which covers what the edge functions may add to a triangle (triangle.glsl).
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "ray_node.glsl"
+BUFFER(ROLE_TRIANGLE_A, readonly, vec3, triangle_a);
+BUFFER(ROLE_TRIANGLE_B, readonly, vec3, triangle_b);
+BUFFER(ROLE_TRIANGLE_C, readonly, vec3, triangle_c);
+BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
+BUFFER(ROLE_SPHERES, coherent, vec4, spheres);
+BUFFER(ROLE_MESH_SPHERES, coherent, vec4, mesh_spheres);
+layout(push_constant) uniform Push {
+  uint meshes;    // 0: triangles, one an invocation; 1: instances, one an invocation
+} push;
+
+vec4 padded(vec3 centre, float radius) { return vec4(centre, radius * (1.0 + PAD) + 2.0 * frame.box_pad); }
+
+vec4 triangle_sphere(vec3 a, vec3 b, vec3 c) {
+  // The smallest: the longest side's where the angle across is not acute, else the circumscribed one.
+  vec3 ab = b - a, ac = c - a, bc = c - b;
+  float lab = dot(ab, ab), lac = dot(ac, ac), lbc = dot(bc, bc);
+  vec3 centre;
+  if (lab >= lac + lbc) {
+    centre = 0.5 * (a + b);
+  } else if (lac >= lab + lbc) {
+    centre = 0.5 * (a + c);
+  } else if (lbc >= lab + lac) {
+    centre = 0.5 * (b + c);
+  } else {
+    vec3 n = cross(ab, ac);
+    centre = a + (lac * cross(n, ab) + lab * cross(ac, n)) / (2.0 * dot(n, n));
+    if (!(length(centre - a) < INFINITY)) centre = (a + b + c) / 3.0;
+  }
+  return vec4(centre, max(max(length(a - centre), length(b - centre)), length(c - centre)));
+}
+
+void main() {
+  uint i = global_index();
+  if (push.meshes == 0u) {
+    if (i >= frame.triangles) return;
+    vec4 s = triangle_sphere(triangle_a[i], triangle_b[i], triangle_c[i]);
+    spheres[i] = padded(s.xyz, s.w);
+    return;
+  }
+  if (i >= frame.instances) return;
+  uint first = instances[i].first_triangle, last = first + instances[i].triangle_count;
+  vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
+  for (uint t = first; t < last; ++t) {
+    lo = min(lo, min(min(triangle_a[t], triangle_b[t]), triangle_c[t]));
+    hi = max(hi, max(max(triangle_a[t], triangle_b[t]), triangle_c[t]));
+  }
+  vec3 centre = 0.5 * lo + 0.5 * hi;
+  float radius = 0.0;
+  for (uint t = first; t < last; ++t)
+    radius = max(radius, max(max(length(triangle_a[t] - centre), length(triangle_b[t] - centre)), length(triangle_c[t] - centre)));
+  mesh_spheres[i] = padded(centre, radius);
+}

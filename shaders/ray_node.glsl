@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Nodes over rays (R 4.3, H): a sphere that holds all origins, a cone that holds all directions.
+//
+// The cone keeps its half-angle, not a cosine: near 0 a float cosine cannot tell 0 from 3e-4 rad.
+// Padding. angle_between errs by less than 4·2^-24 + 6·2^-24·angle (two products and a difference a coordinate of the cross
+// product, the square root, atan's 4 ulps on the drivers measured); unit axes are off unit by 2^-23. PAD = 2^-20 absolute and
+// relative covers the sum of both and of the addition. Distances: three squares, a root and a subtraction, 4·2^-24 relative;
+// again PAD. The centre is any point: only the distances from it must be bounded.
+#ifndef SHEAF_RAY_NODE_GLSL
+#define SHEAF_RAY_NODE_GLSL
+struct RayNode {
+  vec3 centre;
+  float radius;
+  vec3 axis;
+  float angle;  // half-angle; ≥ π/2: no cone, every direction
+  float tmax;
+};
+
+const float PAD = 9.5367432e-7;
+const float HALF_PI = 1.57079632679;
+
+float angle_between(vec3 a, vec3 b) { return atan(length(cross(a, b)), dot(a, b)); }
+
+RayNode load_ray_node_words(float w0, float w1, float w2, float w3, float w4, float w5, float w6, float w7, float w8) {
+  return RayNode(vec3(w0, w1, w2), w3, vec3(w4, w5, w6), w7, w8);
+}
+
+#define LOAD_RAY_NODE(buffer, at)                                                                              \
+  load_ray_node_words(buffer[at], buffer[at + 1u], buffer[at + 2u], buffer[at + 3u], buffer[at + 4u], buffer[at + 5u], \
+                      buffer[at + 6u], buffer[at + 7u], buffer[at + 8u])
+
+// Whether some ray of the node may meet the sphere (algorithm 6). w = |v × a|, not a root of a difference, which cancels.
+// The comparisons give way by SLACK of the lengths involved: three products and two sums a side, and sin, cos to 2^-21.
+bool node_meets_sphere(RayNode n, vec3 centre, float radius) {
+  const float SLACK = 3.8146973e-6;  // 2^-18
+  vec3 v = centre - n.centre;
+  float distance = length(v);
+  float reach = radius + n.radius;
+  float give = SLACK * (distance + reach);
+  reach += give;
+  if (distance <= reach) return true;
+  if (distance - reach > n.tmax) return false;
+  if (!(n.angle < HALF_PI)) return true;
+  float z = dot(v, n.axis), w = length(cross(v, n.axis));
+  float c = cos(n.angle), s = sin(n.angle);
+  if (z * c + w * s < -give) return false;      // the apex is the nearest point, and it is outside
+  return !(w * c - z * s > reach);
+}
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The level of the hierarchy that `hybrid` walks: nodes over BUNDLE rays, bounded at once from the rays (tighter than three
+// levels of unions, and one dispatch). Bundles that are too wide to be walked as one are marked.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "lists.glsl"
+#include "ray_node.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_RAY_NODES, writeonly, float, ray_nodes);
+BUFFER(ROLE_BUNDLE_FLAGS, writeonly, uint, bundle_flags);
+layout(push_constant) uniform Push {
+  uint kind;
+  float widest;     // half-angle past which a bundle is loose
+} push;
+
+void main() {
+  uint bundle = global_index(), count = counters[COUNT_RAYS + push.kind];
+  uint first = bundle * BUNDLE;
+  if (first >= count) return;
+  uint last = min(first + BUNDLE, count);
+  vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY), sum = vec3(0), dlo = vec3(2), dhi = vec3(-2);
+  float tmax = 0.0;
+  for (uint i = first; i < last; ++i) {
+    Ray r = LOAD_RAY(rays, order[i]);
+    lo = min(lo, r.origin);
+    hi = max(hi, r.origin);
+    dlo = min(dlo, r.direction);
+    dhi = max(dhi, r.direction);
+    sum += r.direction;
+    tmax = max(tmax, r.tmax);
+  }
+  vec3 centre = 0.5 * lo + 0.5 * hi;
+  float size = length(sum);
+  vec3 axis = size > 1e-3 ? sum / size : vec3(0, 0, 1);
+  // From the box of directions, unit vectors all: |d − axis| bounds the chord, and the angle is 2·asin(chord/2).
+  vec3 far_corner = max(abs(dlo - axis), abs(dhi - axis));
+  float chord = length(far_corner);
+  float angle = size > 1e-3 && chord < 1.4 ? 2.0 * asin(min(0.5 * chord, 1.0)) : 4.0;
+  float radius = length(0.5 * (hi - lo));
+  uint at = bundle * RAY_NODE_WORDS;
+  ray_nodes[at] = centre.x;
+  ray_nodes[at + 1u] = centre.y;
+  ray_nodes[at + 2u] = centre.z;
+  ray_nodes[at + 3u] = radius > 0.0 ? radius * (1.0 + PAD) + PAD * max(max(abs(centre.x), abs(centre.y)), abs(centre.z)) : 0.0;
+  ray_nodes[at + 4u] = axis.x;
+  ray_nodes[at + 5u] = axis.y;
+  ray_nodes[at + 6u] = axis.z;
+  ray_nodes[at + 7u] = angle * (1.0 + PAD) + PAD;
+  ray_nodes[at + 8u] = tmax;
+  // A direction component that changes sign leaves its slab without bounds: such a bundle would walk half the scene.
+  bool mixed = any(lessThan(dlo * dhi, vec3(0))) && angle > 0.25 * push.widest;
+  bundle_flags[bundle] = angle > push.widest || mixed || last - first < 8u ? 1u : 0u;
+}

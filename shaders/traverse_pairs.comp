@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One level of the breadth-first traversal (R 4.4): candidates (node, object) are tested sphere-and-cone against sphere.
+// Candidates come from seeds (a node and a run of objects) or from the survivors of the level above, each opened into
+// its node's ARITY children. Survivors are marked; compaction follows.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+#include "ray_node.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
+BUFFER(ROLE_PAIRS, writeonly, uvec2, candidates);
+BUFFER(ROLE_SURVIVORS, writeonly, uint, survivors);
+BUFFER(ROLE_PAIRS_NEXT, readonly, uvec2, parents);     // survivors of the level above
+BUFFER(ROLE_SKELETON, readonly, uvec4, seeds);         // node, first object, candidates before, unused
+BUFFER(ROLE_SPHERES, readonly, vec4, spheres);         // of triangles or of instances
+layout(push_constant) uniform Push {
+  uint kind;
+  uint level;        // of the nodes being tested; 0: rays
+  uint first_word;   // of this level's nodes
+  uint nodes;        // on this level
+  uint candidates;   // in this batch
+  uint offset;       // first parent, or first candidate among the seeds
+  uint seeds;        // not 0: so many seeds
+} push;
+
+uvec2 seeded(uint i) {  // the seed whose run holds candidate i
+  uint lo = 0u, hi = push.seeds - 1u;
+  while (lo < hi) {
+    uint middle = (lo + hi + 1u) / 2u;
+    if (seeds[middle].z <= i)
+      lo = middle;
+    else
+      hi = middle - 1u;
+  }
+  return uvec2(seeds[lo].x, seeds[lo].y + i - seeds[lo].z);
+}
+
+RayNode node_at(uint i) {
+  if (push.level == 0u) {
+    Ray r = LOAD_RAY(rays, order[i]);
+    return RayNode(r.origin, 0.0, r.direction, 0.0, r.tmax);
+  }
+  return LOAD_RAY_NODE(ray_nodes, push.first_word + i * RAY_NODE_WORDS);
+}
+
+void main() {
+  uint i = global_index();
+  if (i >= push.candidates) return;
+  uvec2 pair;
+  if (push.seeds != 0u) {
+    pair = seeded(push.offset + i);
+  } else {
+    pair = parents[push.offset + i / ARITY];
+    pair.x = pair.x * ARITY + i % ARITY;
+  }
+  bool exists = pair.x < push.nodes;
+  bool survives = false;
+  if (exists) {
+    vec4 s = spheres[pair.y];
+    survives = node_meets_sphere(node_at(pair.x), s.xyz, s.w);
+  }
+  candidates[i] = pair;
+  survivors[i] = survives ? 1u : 0u;
+  count_tests(push.kind, STAT_NODE_OBJECT, exists ? 1u : 0u);
+  count_tests(push.kind, STAT_LEVELS + min(push.level, MAX_LEVELS - 1u), exists ? 1u : 0u);
+  if (PIXEL_COUNTED && exists && push.level == 0u) count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, order[pair.x])), 1u);
+}
