@@ -63,7 +63,8 @@ std::optional<RequestHead> ClientStream::read_head() {
 }
 
 void ClientStream::begin(const RequestHead& head, std::uint64_t body_limit) {
-  shown_ = head.method + " / HTTP/1." + (head.http_1_0 ? "0" : "1") + "\r\n";
+  // The library knows few methods and only needs to know whether a body is to be sent.
+  shown_ = std::string(head.method == "HEAD" ? "HEAD" : "GET") + " / HTTP/1." + (head.http_1_0 ? "0" : "1") + "\r\n";
   if (!head.keep_alive) shown_ += "Connection: close\r\n";
   shown_ += "\r\n";
   continue_due_ = head.expects_continue;

@@ -2,7 +2,6 @@
 #include "http/request_head.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include "http/problem.hpp"
@@ -48,9 +47,6 @@ void parse_start_line(std::string_view line, const HeadLimits& limits, RequestHe
                                                  " bytes, the limit is " + std::to_string(limits.target));
   if (std::ranges::any_of(head.target, [](char c) { return static_cast<unsigned char>(c) <= 32 || c == 127; }))
     malformed("the request target holds a space or control character");
-  static constexpr std::array known{"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "CONNECT"};
-  if (std::ranges::find(known, head.method) == known.end())
-    throw Problem(ProblemKind::not_implemented, "method " + head.method + " is not known");
 }
 
 std::uint64_t parse_length(std::string_view text) {

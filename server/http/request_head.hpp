@@ -31,7 +31,7 @@ struct RequestHead {
   bool expects_continue = false;
 };
 
-/// `text` ends with the blank line. Throws Problem: 400, 414, 431, 501.
+/// `text` ends with the blank line. Throws Problem: 400, 414, 431.
 [[nodiscard]] RequestHead parse_request_head(std::string_view text, const HeadLimits& limits);
 
 /// Target into decoded path and query. Throws Problem 400: bad escapes, control characters, not starting with '/'.

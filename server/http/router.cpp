@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "http/router.hpp"
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 #include "http/problem.hpp"
@@ -52,6 +54,9 @@ bool Router::matches(const Route& route, const std::vector<std::string>& segment
 }
 
 Reply Router::dispatch(Request& request) const {
+  static constexpr std::array known{"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "CONNECT"};
+  if (std::ranges::find(known, request.method) == known.end())
+    throw Problem(ProblemKind::not_implemented, "method " + request.method + " is not known");
   const std::vector<std::string> segments = split_path(request.path);
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   std::set<std::string> allowed;

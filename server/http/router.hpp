@@ -17,7 +17,7 @@ class Router {
  public:
   void add(const std::string& method, const std::string& pattern, RouteHandler handler);
 
-  /// Throws Problem: 404 for an unknown path, 405 with Allow for a known one.
+  /// Throws Problem: 501 for an unknown method, 404 for an unknown path, 405 with Allow for a known one.
   Reply dispatch(Request& request) const;
 
   /// "GET /v1/jobs/{id}", for the contract's test.

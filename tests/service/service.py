@@ -33,15 +33,18 @@ class Service:
 
     def __init__(self, data: pathlib.Path, *options: str, sheaf: pathlib.Path = FAKE, env: dict[str, str] | None = None):
         self.data = data
+        free = [] if "--min-free" in options else ["--min-free", "0"]  # whatever the machine's disk
         self.process = subprocess.Popen(
-            [program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, "--min-free", "0", *options],
+            [program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, *free, *options],
             stderr=subprocess.PIPE, text=True, env={**os.environ, **(env or {})})
         self.log: list[dict] = []
         self._listening = threading.Event()
         self._reader = threading.Thread(target=self._read_log, daemon=True)
         self._reader.start()
-        assert self._listening.wait(PATIENCE) and self.log, "sheafd did not start"
-        self.address = next(entry["address"] for entry in self.log if entry["message"] == "listening")
+        assert self._listening.wait(PATIENCE), "sheafd did not start in time"
+        addresses = [entry["address"] for entry in self.log if entry["message"] == "listening"]
+        assert addresses, f"sheafd did not start: {self.log}"
+        self.address = addresses[0]
         self.url = "http://" + self.address
         self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
 

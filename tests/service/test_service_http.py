@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: MIT
+"""The HTTP layer itself: routes and methods, hostile bytes, connections."""
+
+import json
+import pathlib
+import re
+import socket
+import subprocess
+from collections.abc import Callable
+
+import pytest
+from service import Service, check_problem, gltf, program
+
+
+def status_of(answer: bytes) -> int:
+    return int(answer.split(b" ", 2)[1])
+
+
+def problem_of(answer: bytes) -> dict:
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert b"content-type: application/problem+json" in head.lower()
+    return json.loads(body)
+
+
+def test_unknown_routes_and_methods(sheafd: Service) -> None:
+    for path in ("/nope", "/v1", "/v1/", "/v1/jobs/", "/v2/jobs", "/healthz/", "/v1/jobs/x/y"):
+        check_problem(sheafd.http.get(path), 404, "unknown-route")
+    for method, path, allow in (("PUT", "/v1/jobs", "GET, HEAD, OPTIONS, POST"), ("POST", "/", "GET, HEAD, OPTIONS"),
+                                ("PATCH", "/v1/jobs/x", "DELETE, GET, HEAD, OPTIONS"),
+                                ("DELETE", "/metrics", "GET, HEAD, OPTIONS"), ("TRACE", "/", "GET, HEAD, OPTIONS")):
+        reply = sheafd.http.request(method, path)
+        check_problem(reply, 405, "method-not-allowed")
+        assert reply.headers["Allow"] == allow
+    options = sheafd.http.options("/v1/jobs")
+    assert options.status_code == 204 and options.headers["Allow"] == "GET, HEAD, OPTIONS, POST"
+    check_problem(sheafd.http.request("BREW", "/"), 501, "not-implemented")
+
+
+def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
+    job = sheafd.accepted(gltf(), {"frames": 0})
+    sheafd.wait(job)
+    for path in ("/healthz", "/readyz", "/metrics", "/openapi.json", "/", "/v1/jobs", f"/v1/jobs/{job}",
+                 f"/v1/jobs/{job}/stats.csv", f"/v1/jobs/{job}/log", "/nope"):
+        got, head = sheafd.http.get(path), sheafd.http.head(path)
+        assert head.status_code == got.status_code and head.content == b""
+        assert head.headers["Content-Type"] == got.headers["Content-Type"]
+        if path not in ("/metrics", "/readyz"):
+            assert head.headers["Content-Length"] == got.headers["Content-Length"]
+        assert got.headers["X-Content-Type-Options"] == "nosniff" and got.headers["X-Request-Id"]
+
+
+@pytest.mark.parametrize(("request_bytes", "status"), [
+    (b"GET / HTTP/1.1\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", 400),
+    (b"GET  / HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+    (b"GET / HTTP/2.0\r\nHost: a\r\n\r\n", 400),
+    (b"GET /\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\nHost: a\n\n\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost: a\r\n folded: x\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost: a\r\nBad Name: x\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost : a\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost: a\r\nX: \x00\r\n\r\n", 400),
+    (b"GET /%zz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+    (b"GET /%00 HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+    (b"GET http://a/ HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n", 400),
+    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400),
+    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n", 400),
+    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n", 400),
+    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: gzip, chunked\r\n\r\n", 400),
+    (b"GET / HTTP/1.1\r\nHost: a\r\n" + b"X: y\r\n" * 101 + b"\r\n", 431),
+    (b"GET / HTTP/1.1\r\nHost: a\r\nX: " + b"y" * 40_000 + b"\r\n\r\n", 431),
+    (b"GET /" + b"y" * 5000 + b" HTTP/1.1\r\nHost: a\r\n\r\n", 414),
+    (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 400),
+])
+def test_malformed_heads(sheafd: Service, request_bytes: bytes, status: int) -> None:
+    answer = sheafd.raw(request_bytes)
+    assert status_of(answer) == status
+    assert problem_of(answer)["status"] == status
+    assert sheafd.http.get("/healthz").status_code == 200
+
+
+CHUNKED = (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\n"
+           b"Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n")
+
+
+@pytest.mark.parametrize("body", [b"zz\r\n", b"5\r\nabc", b"3\r\nabcd\r\n", b"ffffffffffffffffffff\r\n", b"1;" + b"x" * 999,
+                                  b"\r\n", b"0x5\r\nhello\r\n0\r\n\r\n", b"-1\r\n"])
+def test_malformed_chunks(sheafd: Service, body: bytes) -> None:
+    assert status_of(sheafd.raw(CHUNKED + body, half_close=True)) == 400
+
+
+def test_a_chunked_submission_with_extensions_and_trailers(sheafd: Service) -> None:
+    body = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n' + gltf() + b"\r\n--b--\r\n"
+    chunks = b"".join(b"%x;note=1\r\n%c\r\n" % (1, byte) for byte in body) + b"0\r\nTrailer: x\r\n\r\n"
+    assert status_of(sheafd.raw(CHUNKED + chunks)) == 202
+
+
+def test_an_upload_that_breaks_off_leaves_nothing(sheafd: Service) -> None:
+    body = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n' + b" " * 5000
+    head = CHUNKED.replace(b"Transfer-Encoding: chunked", b"Content-Length: 90000")
+    assert status_of(sheafd.raw(head + body, half_close=True)) == 400
+    assert not list((sheafd.data / "incoming").iterdir())
+
+
+def test_pipelined_requests_are_kept_apart(sheafd: Service) -> None:
+    smuggled = b"GET /smuggled HTTP/1.1\r\nHost: a\r\n\r\n"
+    first = b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"
+    last = b"GET /nope HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"
+    answer = sheafd.raw(first + first + last)
+    assert answer.count(b"HTTP/1.1 200") == 2 and answer.count(b"HTTP/1.1 404") == 1
+    # A body that no route reads is not taken for a request: the connection ends.
+    unread = b"GET /healthz HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n\r\n" % len(smuggled)
+    answer = sheafd.raw(unread + smuggled + last)
+    assert answer.count(b"HTTP/1.1") == 1 and b"Connection: close" in answer
+    assert not any(entry.get("path") == "/smuggled" for entry in sheafd.log)
+
+
+def test_expect_continue(sheafd: Service) -> None:
+    head = (b"POST %s HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
+            b"Content-Length: %d\r\nConnection: close\r\n\r\n")
+    body = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n--b--\r\n'
+    answer = sheafd.raw(head % (b"/v1/jobs", len(body)) + body)
+    assert answer.startswith(b"HTTP/1.1 100 Continue\r\n\r\nHTTP/1.1 202 ")
+    assert sheafd.raw(head % (b"/nope", 1 << 20)).startswith(b"HTTP/1.1 404")
+    assert sheafd.raw(head % (b"/v1/jobs", 1 << 40)).startswith(b"HTTP/1.1 413")
+
+
+def test_http_1_0(sheafd: Service) -> None:
+    job = sheafd.accepted(gltf(), {"frames": 0})
+    sheafd.wait(job)
+    answer = sheafd.raw(b"GET /v1/jobs/%s/events HTTP/1.0\r\n\r\n" % job.encode())
+    assert b"chunked" not in answer and answer.rstrip().endswith(b"}")
+    assert status_of(sheafd.raw(b"GET /healthz HTTP/1.0\r\n\r\n")) == 200
+
+
+def test_slow_heads_and_bodies_time_out_and_stop_nobody(start: Callable[..., Service]) -> None:
+    service = start("--head-timeout", "0.2", "--io-timeout", "0.2", "--http-threads", "3", "--max-streams", "2")
+    host, port = service.address.rsplit(":", 1)
+    idle = [socket.create_connection((host, int(port)), 60) for _ in range(50)]
+    slow = [socket.create_connection((host, int(port)), 60) for _ in range(2)]
+    slow[0].sendall(b"GET / HT")
+    slow[1].sendall(CHUNKED + b"5\r\nab")
+    assert service.http.get("/healthz").status_code == 200
+    for connection in slow:
+        answer = connection.recv(65536)
+        assert status_of(answer) == 408, answer
+    for connection in idle + slow:
+        connection.close()
+
+
+def test_connections_are_bounded(start: Callable[..., Service]) -> None:
+    service = start("--max-connections", "5")
+    host, port = service.address.rsplit(":", 1)
+    held = [socket.create_connection((host, int(port)), 60) for _ in range(5)]
+    for connection in held:
+        connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n")
+        assert status_of(connection.recv(65536)) == 200
+    answer = service.raw(b"")
+    assert status_of(answer) == 503 and b"Retry-After" in answer
+    for connection in held:
+        connection.close()
+    while service.raw(b"GET /healthz HTTP/1.0\r\n\r\n").startswith(b"HTTP/1.1 503"):
+        pass
+
+
+def test_the_contract_names_every_route_and_setting(sheafd: Service) -> None:
+    contract = sheafd.http.get("/openapi.json").json()
+    assert contract["openapi"].startswith("3.1")
+    refs = set(re.findall(r'"#/components/([^"]+)"', json.dumps(contract)))
+    for ref in refs:
+        kind, name = ref.split("/")
+        assert name in contract["components"][kind], ref
+    for path, item in contract["paths"].items():
+        real = path.replace("{id}", "a" * 26).replace("{frame}", "0")
+        allowed = sheafd.http.options(real).headers["Allow"].split(", ")
+        described = {m.upper() for m in item if m in ("get", "post", "delete", "put", "patch")}
+        assert described == set(allowed) - {"HEAD", "OPTIONS"}, path
+
+
+def test_metrics_are_well_formed(sheafd: Service) -> None:
+    sheafd.wait(sheafd.accepted(gltf(), {"frames": "0-3"}))
+    reply = sheafd.http.get("/metrics")
+    assert reply.headers["Content-Type"].startswith("text/plain; version=0.0.4")
+    sample = re.compile(r'^[a-z_]+(\{[a-z_]+="[^"]*"(,[a-z_]+="[^"]*")*\})? -?[0-9.e+-]+$')
+    lines = [line for line in reply.text.splitlines() if not line.startswith("#")]
+    assert lines and all(sample.match(line) for line in lines)
+    assert 'sheaf_jobs{state="done"} 1' in lines and "sheaf_frames_rendered_total 4" in lines
+    assert 'sheaf_http_requests_total{method="POST",status="202"} 1' in lines
+
+
+def test_the_page(sheafd: Service) -> None:
+    reply = sheafd.http.get("/")
+    assert reply.headers["Content-Type"].startswith("text/html") and "<title>Sheaf</title>" in reply.text
+    assert "default-src 'none'" in reply.headers["Content-Security-Policy"]
+    assert not re.search(r'(src|href)="(https?:)?//', reply.text)
+
+
+def run(*options: str) -> subprocess.CompletedProcess:
+    return subprocess.run([program("sheafd"), *options], capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.parametrize("options", [["--listen", "nowhere"], ["--listen", "127.0.0.1:99999"], ["--jobs", "0"],
+                                     ["--colour"], ["--max-streams", "32", "--http-threads", "32"], ["--max-upload", "x"],
+                                     ["--listen", "[::1:80"]])
+def test_bad_usage(options: list[str]) -> None:
+    ended = run(*options)
+    assert ended.returncode == 2 and ended.stderr.startswith("sheafd: ") and ended.stderr.count("\n") == 1
+
+
+def test_help_version_and_io_failures(tmp_path: pathlib.Path, sheafd: Service) -> None:
+    assert "--retention" in run("--help").stdout and run("--version").stdout.startswith("sheafd ")
+    taken = run("--listen", sheafd.address, "--data", str(tmp_path / "other"))
+    assert taken.returncode == 6 and "in use" in taken.stderr
+    (tmp_path / "file").write_text("")
+    assert run("--data", str(tmp_path / "file"), "--listen", "127.0.0.1:0").returncode == 6
+
+
+def test_the_port_file(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
+    service = start("--port-file", str(tmp_path / "port"))
+    assert (tmp_path / "port").read_text() == service.address + "\n"
