@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154 # jobs and logs are those of .ci/test
 # Unit tests built with sanitizers. Sourced by .ci/test.
 
 sanitizer_build_seconds=${SHEAF_CI_SANITIZER_SECONDS:-900} # a build; with a warm compiler cache it takes seconds

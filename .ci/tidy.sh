@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154 # jobs and logs are those of .ci/test
 # clang-tidy on the C++ files that differ from the base. Sourced by .ci/test.
 
 tidy_most_files=10
