@@ -68,7 +68,7 @@ std::string choice(const json& value, Context& context) {
 
 constexpr std::array strategies{"auto",     "hybrid", "crsh",  "rsh",      "frustum",
                                 "classify", "bvh",    "brute", "rayquery", "reference"};
-constexpr std::array sorts{"auto", "on", "off"};
+constexpr std::array switches{"auto", "on", "off"};
 constexpr std::array primaries{"raster", "trace"};
 constexpr std::array compressions{"none", "rle", "zips", "zip", "piz", "dwaa"};
 
@@ -130,7 +130,7 @@ std::string fps(const json& value, Context& context) {
   if (!middle || std::from_chars(ratio.data(), middle, over).ptr != middle ||
       std::from_chars(middle + 1, end, under).ptr != end || over == 0 || under == 0 || over / under > 1000)
     context.refuse("must be a number or \"24000/1001\"");
-  return ratio;
+  return json(static_cast<double>(over) / static_cast<double>(under)).dump();
 }
 
 template <std::uint64_t Limits::*limit>
@@ -171,6 +171,17 @@ std::string name(const json& value, Context& context) {
   return pattern;
 }
 
+std::string environment(const json& value, Context& context) {
+  const auto component = [&](const json& part) {
+    if (!part.is_number() || !(part.get<double>() >= 0 && part.get<double>() <= 1e6))
+      context.refuse("must be three numbers from 0 to 1000000");
+    return part.dump();
+  };
+  const json parts = value.is_string() ? json::parse("[" + value.get<std::string>() + "]", nullptr, false) : value;
+  if (!parts.is_array() || parts.size() != 3) context.refuse("must be \"R,G,B\" or [R, G, B]");
+  return component(parts[0]) + "," + component(parts[1]) + "," + component(parts[2]);
+}
+
 std::string flag(const json& value, Context& context) {
   if (!value.is_boolean()) context.refuse("must be true or false");
   if (context.key == "preview") context.settings.preview = value.get<bool>();
@@ -191,11 +202,14 @@ constexpr std::array table{Setting{"frames", frames},
                            Setting{"depth", bounded<&Limits::depth>},
                            Setting{"cutoff", cutoff},
                            Setting{"strategy", choice<strategies>},
-                           Setting{"sort", choice<sorts>},
+                           Setting{"sort", choice<switches>},
                            Setting{"primary", choice<primaries>},
                            Setting{"aov", aov},
                            Setting{"compression", choice<compressions>},
                            Setting{"name", name},
+                           Setting{"scene-name", name_or_index},
+                           Setting{"environment", environment},
+                           Setting{"count", choice<switches>},
                            Setting{"memory", bounded<&Limits::memory_mib>},
                            Setting{"device", name_or_index},
                            Setting{"opaque", flag},

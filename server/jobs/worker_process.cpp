@@ -119,7 +119,7 @@ class Worker {
 
   void obey() {
     if (stop_.asked() && !kill_at_) {
-      ::kill(-pid_, SIGTERM);
+      if (!stop_.forced()) ::kill(-pid_, SIGTERM);
       kill_at_ = Clock::now() + grace_;
     }
     if (kill_at_ && (stop_.forced() || Clock::now() >= *kill_at_)) ::kill(-pid_, SIGKILL);

@@ -27,7 +27,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--preview", action="store_true")
     parser.add_argument("--opaque", action="store_true")
     for name in ("out", "stats", "progress", "camera", "frames", "fps", "animation", "camera-node", "size", "spp", "depth",
-                 "cutoff", "strategy", "sort", "primary", "aov", "compression", "name", "memory", "device"):
+                 "cutoff", "strategy", "sort", "primary", "aov", "compression", "name", "memory", "device",
+                 "scene-name", "environment", "count"):
         parser.add_argument("--" + name)
     return parser.parse_args()
 

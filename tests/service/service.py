@@ -22,10 +22,12 @@ PATIENCE = 60  # seconds until a test gives up; nothing waits this long when all
 
 
 def program(name: str) -> pathlib.Path:
-    for place in (BUILD / name, BUILD / "engine" / name, BUILD / "server" / name):
+    """A built program. A sanitizer's build folder may hold the service alone: the engine is then the usual build's."""
+    places = [BUILD / name, (HERE / "../../build" / name).resolve()]
+    for place in places:
         if place.is_file():
             return place
-    raise AssertionError(f"{name} is not built: looked in {BUILD} (set SHEAF_BUILD)")
+    raise AssertionError(f"{name} is not built: looked for {' and '.join(map(str, places))} (set SHEAF_BUILD)")
 
 
 class Service:

@@ -51,8 +51,8 @@ def test_a_job_from_submission_to_its_end(sheafd: Service) -> None:
 def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
     settings = {"frames": [1, 2], "fps": 25, "animation": "Walk", "camera-node": 1, "size": [32, 18], "spp": 4, "depth": 3,
                 "cutoff": 0.01, "strategy": "hybrid", "sort": "on", "primary": "trace", "aov": ["Z", "N"],
-                "compression": "piz", "name": "shot.####.exr", "memory": 512, "device": 0, "opaque": True,
-                "preview": False}
+                "compression": "piz", "name": "shot.####.exr", "memory": 512, "device": 0, "scene-name": "Night",
+                "environment": [0.5, 1, 2.5], "count": "on", "opaque": True, "preview": False}
     job = sheafd.accepted(gltf(), settings)
     assert sheafd.wait(job)["state"] == "done"
     told = arguments(sheafd, job, 1)
@@ -61,7 +61,7 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
     assert sorted(a for a in told[2:] if "=" in a or a == "--opaque") == sorted([
         "--frames=1,2", "--fps=25", "--animation=Walk", "--camera-node=1", "--size=32x18", "--spp=4", "--depth=3",
         "--cutoff=0.01", "--strategy=hybrid", "--sort=on", "--primary=trace", "--aov=Z,N", "--compression=piz",
-        "--name=shot.####.exr", "--memory=512", "--device=0", "--opaque"])
+        "--name=shot.####.exr", "--memory=512", "--device=0", "--opaque", "--scene-name=Night", "--environment=0.5,1,2.5", "--count=on"])
     assert "--preview" not in told
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/1.png"), 404, "not-produced")
 

@@ -94,15 +94,28 @@ def test_a_second_delete_kills_at_once(start: Callable[..., Service], gate: Gate
     assert not (service.data / "jobs" / job).exists()
 
 
-def test_children_left_behind_go_too(sheafd: Service) -> None:
-    job = sheafd.accepted(gltf(child=True), {"frames": 0})
-    assert sheafd.wait(job)["state"] == "done"
+def processes_of(job: str) -> list[str]:
+    """Living processes whose command line names the job."""
+    found = []
     for place in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
-            command, status = place.read_bytes(), place.with_name("stat").read_text()
+            if job.encode() in place.read_bytes() and ") Z" not in place.with_name("stat").read_text():
+                found.append(place.parent.name)
         except OSError:
             continue
-        assert job.encode() not in command or ") Z" in status
+    return found
+
+
+def test_children_left_behind_go_too(sheafd: Service, gate: Gate) -> None:
+    job = sheafd.accepted(gltf(child=True, gates={"0": gate.path}), {"frames": 0})
+    for event in sheafd.events(job):
+        if event["event"] == "start":
+            break
+    assert len(processes_of(job)) == 2
+    gate.open()
+    assert sheafd.wait(job)["state"] == "done"
+    while processes_of(job):
+        pass
 
 
 def test_workers_get_none_of_the_services_descriptors(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
