@@ -8,7 +8,7 @@ import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 
-from service import PATIENCE, Service  # noqa: E402
+from service import PATIENCE, Service
 
 
 @pytest.fixture

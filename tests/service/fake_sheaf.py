@@ -26,9 +26,31 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--preview", action="store_true")
     parser.add_argument("--opaque", action="store_true")
-    for name in ("out", "stats", "progress", "camera", "frames", "fps", "animation", "camera-node", "size", "spp", "depth",
-                 "cutoff", "strategy", "sort", "primary", "aov", "compression", "name", "memory", "device",
-                 "scene-name", "environment", "count"):
+    for name in (
+        "out",
+        "stats",
+        "progress",
+        "camera",
+        "frames",
+        "fps",
+        "animation",
+        "camera-node",
+        "size",
+        "spp",
+        "depth",
+        "cutoff",
+        "strategy",
+        "sort",
+        "primary",
+        "aov",
+        "compression",
+        "name",
+        "memory",
+        "device",
+        "scene-name",
+        "environment",
+        "count",
+    ):
         parser.add_argument("--" + name)
     return parser.parse_args()
 
@@ -40,7 +62,7 @@ def say(**event: object) -> None:
 def behaviour(scene: str) -> dict:
     data = pathlib.Path(scene).read_bytes()
     if data[:4] == b"glTF":
-        data = data[20:20 + struct.unpack_from("<I", data, 12)[0]]
+        data = data[20 : 20 + struct.unpack_from("<I", data, 12)[0]]
     return json.loads(data).get("extras", {}).get("fake", {})
 
 
@@ -60,8 +82,12 @@ def png(value: int) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
     header = struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes([0, value % 256])))
-            + chunk(b"IEND", b""))
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(bytes([0, value % 256])))
+        + chunk(b"IEND", b"")
+    )
 
 
 def put(path: pathlib.Path, data: bytes) -> None:
@@ -123,10 +149,26 @@ def render(options: argparse.Namespace) -> None:
             put(out / (stem + ".exr"), b"v/1\x01" + body)
             if options.preview:
                 put(out / (stem + ".png"), png(frame))
-        stats.append({"frame": frame, "time_s": frame / 24, "wall_ms": 1.5, "stages": {"raster": 0.5, "shade": 1},
-                      "counted": True, "rays": {"primary": 4}, "tests": {"brute_force": 8, "ray_triangle": {"primary": 2}}})
-        say(event="frame", frame=frame, done=done, total=len(wanted), wall_ms=1.5, eta_s=0.0,
-            file=str(out / (stem + ".exr")))
+        stats.append(
+            {
+                "frame": frame,
+                "time_s": frame / 24,
+                "wall_ms": 1.5,
+                "stages": {"raster": 0.5, "shade": 1},
+                "counted": True,
+                "rays": {"primary": 4},
+                "tests": {"brute_force": 8, "ray_triangle": {"primary": 2}},
+            }
+        )
+        say(
+            event="frame",
+            frame=frame,
+            done=done,
+            total=len(wanted),
+            wall_ms=1.5,
+            eta_s=0.0,
+            file=str(out / (stem + ".exr")),
+        )
     misbehave(fake, None)
     put(pathlib.Path(options.stats), json.dumps({"schema": 1, "frames": stats}).encode())
     say(event="done", frames=len(wanted))

@@ -33,19 +33,26 @@ def program(name: str) -> pathlib.Path:
 class Service:
     """`sheafd` on a port of the system's choice; its log is kept for a test that fails."""
 
-    def __init__(self, data: pathlib.Path, *options: str, sheaf: pathlib.Path = FAKE, env: dict[str, str] | None = None):
+    def __init__(
+        self, data: pathlib.Path, *options: str, sheaf: pathlib.Path = FAKE, env: dict[str, str] | None = None
+    ):
         self.data = data
         free = [] if "--min-free" in options else ["--min-free", "0"]  # whatever the machine's disk
         self.process = subprocess.Popen(
             [program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, *free, *options],
-            stderr=subprocess.PIPE, text=True, env={**os.environ, **(env or {})})
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **(env or {})},
+        )
         self.log: list[dict] = []
         self._listening = threading.Event()
         self._reader = threading.Thread(target=self._read_log, daemon=True)
         self._reader.start()
         assert self._listening.wait(PATIENCE), "sheafd did not start in time"
         addresses = [entry["address"] for entry in self.log if entry["message"] == "listening"]
-        assert addresses, f"sheafd did not start: {self.log}"
+        if not addresses:
+            self._end()
+            raise AssertionError(f"sheafd did not start: {self.log}")
         self.address = addresses[0]
         self.url = "http://" + self.address
         self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
@@ -63,14 +70,23 @@ class Service:
         self.http.close()
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
+        return self._end()
+
+    def _end(self) -> int:
         code = self.process.wait(PATIENCE)
         self._reader.join(PATIENCE)
         assert self.process.stderr
         self.process.stderr.close()
         return code
 
-    def submit(self, scene: bytes, settings: dict | None = None, name: str = "scene.gltf", headers: dict | None = None,
-               parts: list | None = None) -> httpx.Response:
+    def submit(
+        self,
+        scene: bytes,
+        settings: dict | None = None,
+        name: str = "scene.gltf",
+        headers: dict | None = None,
+        parts: list | None = None,
+    ) -> httpx.Response:
         files = [("scene", (name, scene)), *(parts or [])]
         if settings is not None:
             files.append(("settings", (None, json.dumps(settings))))
@@ -130,6 +146,11 @@ def glb(**fake: object) -> bytes:
     text = gltf(**fake)
     text += b" " * (-len(text) % 4)
     return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+def arguments(service: Service, job: str, frame: int = 0) -> list[str]:
+    """What the worker was started with, as the fake one writes it into its frames."""
+    return json.loads(service.http.get(f"/v1/jobs/{job}/frames/{frame}.exr").content[4:])["arguments"]
 
 
 def check_problem(reply: httpx.Response, status: int, slug: str) -> dict:

@@ -41,8 +41,14 @@ def test_a_stream_tells_everything_and_ends(sheafd: Service, gate: Gate) -> None
             if event.get("event") == "frame" and event["data"]["frame"] == 0:
                 threading.Thread(target=gate.open).start()
     assert [(e["event"], e["data"].get("state", e["data"].get("frame"))) for e in heard] == [
-        ("state", "queued"), ("state", "running"), ("start", None), ("warning", None), ("frame", 0), ("frame", 1),
-        ("state", "done")]
+        ("state", "queued"),
+        ("state", "running"),
+        ("start", None),
+        ("warning", None),
+        ("frame", 0),
+        ("frame", 1),
+        ("state", "done"),
+    ]
     assert [e["id"] for e in heard] == [str(i) for i in range(1, 8)]
     assert heard[3]["data"]["message"] == "dim"
     assert heard[4]["data"]["done"] == 1 and heard[4]["data"]["total"] == 2

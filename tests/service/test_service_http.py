@@ -25,9 +25,13 @@ def problem_of(answer: bytes) -> dict:
 def test_unknown_routes_and_methods(sheafd: Service) -> None:
     for path in ("/nope", "/v1", "/v1/", "/v1/jobs/", "/v2/jobs", "/healthz/", "/v1/jobs/x/y"):
         check_problem(sheafd.http.get(path), 404, "unknown-route")
-    for method, path, allow in (("PUT", "/v1/jobs", "GET, HEAD, OPTIONS, POST"), ("POST", "/", "GET, HEAD, OPTIONS"),
-                                ("PATCH", "/v1/jobs/x", "DELETE, GET, HEAD, OPTIONS"),
-                                ("DELETE", "/metrics", "GET, HEAD, OPTIONS"), ("TRACE", "/", "GET, HEAD, OPTIONS")):
+    for method, path, allow in (
+        ("PUT", "/v1/jobs", "GET, HEAD, OPTIONS, POST"),
+        ("POST", "/", "GET, HEAD, OPTIONS"),
+        ("PATCH", "/v1/jobs/x", "DELETE, GET, HEAD, OPTIONS"),
+        ("DELETE", "/metrics", "GET, HEAD, OPTIONS"),
+        ("TRACE", "/", "GET, HEAD, OPTIONS"),
+    ):
         reply = sheafd.http.request(method, path)
         check_problem(reply, 405, "method-not-allowed")
         assert reply.headers["Allow"] == allow
@@ -39,8 +43,18 @@ def test_unknown_routes_and_methods(sheafd: Service) -> None:
 def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
     job = sheafd.accepted(gltf(), {"frames": 0})
     sheafd.wait(job)
-    for path in ("/healthz", "/readyz", "/metrics", "/openapi.json", "/", "/v1/jobs", f"/v1/jobs/{job}",
-                 f"/v1/jobs/{job}/stats.csv", f"/v1/jobs/{job}/log", "/nope"):
+    for path in (
+        "/healthz",
+        "/readyz",
+        "/metrics",
+        "/openapi.json",
+        "/",
+        "/v1/jobs",
+        f"/v1/jobs/{job}",
+        f"/v1/jobs/{job}/stats.csv",
+        f"/v1/jobs/{job}/log",
+        "/nope",
+    ):
         got, head = sheafd.http.get(path), sheafd.http.head(path)
         assert head.status_code == got.status_code and head.content == b""
         assert head.headers["Content-Type"] == got.headers["Content-Type"]
@@ -49,30 +63,33 @@ def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
         assert got.headers["X-Content-Type-Options"] == "nosniff" and got.headers["X-Request-Id"]
 
 
-@pytest.mark.parametrize(("request_bytes", "status"), [
-    (b"GET / HTTP/1.1\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", 400),
-    (b"GET  / HTTP/1.1\r\nHost: a\r\n\r\n", 400),
-    (b"GET / HTTP/2.0\r\nHost: a\r\n\r\n", 400),
-    (b"GET /\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\nHost: a\n\n\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: a\r\n folded: x\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: a\r\nBad Name: x\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost : a\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: a\r\nX: \x00\r\n\r\n", 400),
-    (b"GET /%zz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
-    (b"GET /%00 HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
-    (b"GET http://a/ HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
-    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n", 400),
-    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400),
-    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n", 400),
-    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n", 400),
-    (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: gzip, chunked\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: a\r\n" + b"X: y\r\n" * 101 + b"\r\n", 431),
-    (b"GET / HTTP/1.1\r\nHost: a\r\nX: " + b"y" * 40_000 + b"\r\n\r\n", 431),
-    (b"GET /" + b"y" * 5000 + b" HTTP/1.1\r\nHost: a\r\n\r\n", 414),
-    (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 400),
-])
+@pytest.mark.parametrize(
+    ("request_bytes", "status"),
+    [
+        (b"GET / HTTP/1.1\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", 400),
+        (b"GET  / HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET / HTTP/2.0\r\nHost: a\r\n\r\n", 400),
+        (b"GET /\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\nHost: a\n\n\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a\r\n folded: x\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a\r\nBad Name: x\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost : a\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a\r\nX: \x00\r\n\r\n", 400),
+        (b"GET /%zz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+        (b"GET /%00 HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+        (b"GET http://a/ HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+        (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n", 400),
+        (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400),
+        (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n", 400),
+        (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n", 400),
+        (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: gzip, chunked\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a\r\n" + b"X: y\r\n" * 101 + b"\r\n", 431),
+        (b"GET / HTTP/1.1\r\nHost: a\r\nX: " + b"y" * 40_000 + b"\r\n\r\n", 431),
+        (b"GET /" + b"y" * 5000 + b" HTTP/1.1\r\nHost: a\r\n\r\n", 414),
+        (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 400),
+    ],
+)
 def test_malformed_heads(sheafd: Service, request_bytes: bytes, status: int) -> None:
     answer = sheafd.raw(request_bytes)
     assert status_of(answer) == status
@@ -80,12 +97,25 @@ def test_malformed_heads(sheafd: Service, request_bytes: bytes, status: int) -> 
     assert sheafd.http.get("/healthz").status_code == 200
 
 
-CHUNKED = (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\n"
-           b"Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n")
+CHUNKED = (
+    b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\n"
+    b"Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n"
+)
 
 
-@pytest.mark.parametrize("body", [b"zz\r\n", b"5\r\nabc", b"3\r\nabcd\r\n", b"ffffffffffffffffffff\r\n", b"1;" + b"x" * 999,
-                                  b"\r\n", b"0x5\r\nhello\r\n0\r\n\r\n", b"-1\r\n"])
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"zz\r\n",
+        b"5\r\nabc",
+        b"3\r\nabcd\r\n",
+        b"ffffffffffffffffffff\r\n",
+        b"1;" + b"x" * 999,
+        b"\r\n",
+        b"0x5\r\nhello\r\n0\r\n\r\n",
+        b"-1\r\n",
+    ],
+)
 def test_malformed_chunks(sheafd: Service, body: bytes) -> None:
     assert status_of(sheafd.raw(CHUNKED + body, half_close=True)) == 400
 
@@ -117,8 +147,10 @@ def test_pipelined_requests_are_kept_apart(sheafd: Service) -> None:
 
 
 def test_expect_continue(sheafd: Service) -> None:
-    head = (b"POST %s HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
-            b"Content-Length: %d\r\nConnection: close\r\n\r\n")
+    head = (
+        b"POST %s HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
+        b"Content-Length: %d\r\nConnection: close\r\n\r\n"
+    )
     body = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n--b--\r\n'
     answer = sheafd.raw(head % (b"/v1/jobs", len(body)) + body)
     assert answer.startswith(b"HTTP/1.1 100 Continue\r\n\r\nHTTP/1.1 202 ")
@@ -200,9 +232,18 @@ def run(*options: str) -> subprocess.CompletedProcess:
     return subprocess.run([program("sheafd"), *options], capture_output=True, text=True, timeout=60, check=False)
 
 
-@pytest.mark.parametrize("options", [["--listen", "nowhere"], ["--listen", "127.0.0.1:99999"], ["--jobs", "0"],
-                                     ["--colour"], ["--max-streams", "32", "--http-threads", "32"], ["--max-upload", "x"],
-                                     ["--listen", "[::1:80"]])
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--listen", "nowhere"],
+        ["--listen", "127.0.0.1:99999"],
+        ["--jobs", "0"],
+        ["--colour"],
+        ["--max-streams", "32", "--http-threads", "32"],
+        ["--max-upload", "x"],
+        ["--listen", "[::1:80"],
+    ],
+)
 def test_bad_usage(options: list[str]) -> None:
     ended = run(*options)
     assert ended.returncode == 2 and ended.stderr.startswith("sheafd: ") and ended.stderr.count("\n") == 1

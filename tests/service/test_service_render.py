@@ -24,21 +24,32 @@ def triangle(indices: tuple[int, int, int] = (0, 1, 2)) -> dict:
         views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(part)})
         offset += len(part)
     return {
-        "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_unlit"],
-        "buffers": [{"byteLength": len(buffer), "uri": "triangle.bin"}], "bufferViews": views,
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "buffers": [{"byteLength": len(buffer), "uri": "triangle.bin"}],
+        "bufferViews": views,
         "accessors": [
             {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
             {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
             {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
-            {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3"}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]},
-                       "extensions": {"KHR_materials_unlit": {}}}],
+            {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3"},
+        ],
+        "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}, "extensions": {"KHR_materials_unlit": {}}}
+        ],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}}],
         "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]}],
-        "animations": [{"samplers": [{"input": 2, "output": 3}],
-                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
-        "scenes": [{"nodes": [0, 1]}], "scene": 0, "extras": {"bin": base64.b64encode(buffer).decode()}}
+        "animations": [
+            {
+                "samplers": [{"input": 2, "output": 3}],
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+            }
+        ],
+        "scenes": [{"nodes": [0, 1]}],
+        "scene": 0,
+        "extras": {"bin": base64.b64encode(buffer).decode()},
+    }
 
 
 def parts(scene: dict) -> tuple[bytes, list]:
@@ -60,8 +71,22 @@ def test_frames_over_http_are_those_of_the_command_line(real: Service, tmp_path:
     (tmp_path / "triangle.gltf").write_bytes(scene)
     (tmp_path / "triangle.bin").write_bytes(files[0][1][1])
     out = tmp_path / "out"
-    subprocess.run([program("sheaf"), "render", tmp_path / "triangle.gltf", "--out", out, "--frames=0,12,24",
-                    "--size=48x32", "--fps=24", "--preview", "--progress=none"], check=True, timeout=300)
+    subprocess.run(
+        [
+            program("sheaf"),
+            "render",
+            tmp_path / "triangle.gltf",
+            "--out",
+            out,
+            "--frames=0,12,24",
+            "--size=48x32",
+            "--fps=24",
+            "--preview",
+            "--progress=none",
+        ],
+        check=True,
+        timeout=300,
+    )
     frames = {}
     for frame in end["frames"]:
         exr, png = (real.http.get(frame[kind]) for kind in ("exr", "png"))
@@ -87,10 +112,28 @@ def test_a_bad_scene_fails_with_the_engines_reason(real: Service) -> None:
 def test_every_setting_is_one_of_the_engine(real: Service) -> None:
     camera = {"version": 1, "keys": [{"time": 0, "eye": [0, 0, 4], "target": [0, 0, 0]}]}
     scene, files = parts(triangle())
-    settings = {"frames": [0], "fps": "24000/1001", "animation": 0, "size": [16, 8], "spp": 2, "depth": 2, "cutoff": 0.001,
-                "strategy": "auto", "sort": "auto", "primary": "trace", "aov": ["Z", "N"], "compression": "rle",
-                "name": "f.##.exr", "memory": 64, "device": 0, "scene-name": 0, "environment": [0, 0, 0.5], "count": "on",
-                "opaque": True, "preview": True}
+    settings = {
+        "frames": [0],
+        "fps": "24000/1001",
+        "animation": 0,
+        "size": [16, 8],
+        "spp": 2,
+        "depth": 2,
+        "cutoff": 0.001,
+        "strategy": "auto",
+        "sort": "auto",
+        "primary": "trace",
+        "aov": ["Z", "N"],
+        "compression": "rle",
+        "name": "f.##.exr",
+        "memory": 64,
+        "device": 0,
+        "scene-name": 0,
+        "environment": [0, 0, 0.5],
+        "count": "on",
+        "opaque": True,
+        "preview": True,
+    }
     files.append(("camera", ("c.json", json.dumps(camera).encode())))
     end = real.wait(real.accepted(scene, settings, parts=files))
     assert end["state"] == "done", end["error"]

@@ -38,8 +38,14 @@ def test_ranges(sheafd: Service, done: str) -> None:
     url = f"{done}/frames/0.exr"
     whole = sheafd.http.get(url).content
     size = len(whole)
-    for text, part in (("0-3", whole[:4]), ("100000-", whole[100000:]), ("-10", whole[-10:]), (f"5-{size * 2}", whole[5:]),
-                       (f"-{size * 2}", whole), (f"{size - 1}-", whole[-1:])):
+    for text, part in (
+        ("0-3", whole[:4]),
+        ("100000-", whole[100000:]),
+        ("-10", whole[-10:]),
+        (f"5-{size * 2}", whole[5:]),
+        (f"-{size * 2}", whole),
+        (f"{size - 1}-", whole[-1:]),
+    ):
         reply = sheafd.http.get(url, headers={"Range": f"bytes={text}"})
         assert reply.status_code == 206, text
         assert reply.content == part

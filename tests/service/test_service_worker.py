@@ -12,15 +12,32 @@ from conftest import Gate
 from service import Service, check_problem, gltf
 
 
-@pytest.mark.parametrize(("code", "slug"), [(1, "worker-failed"), (2, "worker-usage"), (3, "bad-scene"), (4, "device"),
-                                            (5, "limit-exceeded"), (6, "storage"), (130, "interrupted"),
-                                            (143, "interrupted"), (99, "worker-failed")])
+@pytest.mark.parametrize(
+    ("code", "slug"),
+    [
+        (1, "worker-failed"),
+        (2, "worker-usage"),
+        (3, "bad-scene"),
+        (4, "device"),
+        (5, "limit-exceeded"),
+        (6, "storage"),
+        (130, "interrupted"),
+        (143, "interrupted"),
+        (99, "worker-failed"),
+    ],
+)
 def test_exit_codes(sheafd: Service, code: int, slug: str) -> None:
     job = sheafd.accepted(gltf(exit={"code": code, "message": "scene.gltf: accessors[3]: count is 0"}), {"frames": 0})
     end = sheafd.wait(job)
     assert end["state"] == "failed"
-    assert end["error"] == {"type": f"urn:sheaf:problem:{slug}", "code": slug, "title": end["error"]["title"],
-                            "message": "scene.gltf: accessors[3]: count is 0", "exit_code": code, "signal": None}
+    assert end["error"] == {
+        "type": f"urn:sheaf:problem:{slug}",
+        "code": slug,
+        "title": end["error"]["title"],
+        "message": "scene.gltf: accessors[3]: count is 0",
+        "exit_code": code,
+        "signal": None,
+    }
     last = list(sheafd.events(job))[-1]
     assert last["data"]["error"] == end["error"]
 
@@ -38,10 +55,22 @@ def test_a_crash_fails_its_job_and_no_other(sheafd: Service, number: signal.Sign
 
 
 def test_garbage_is_logged_and_harmless(sheafd: Service) -> None:
-    lines = ["", "hello", "{", "[1]", '{"event":7}', '{"event":"frame"}', '{"event":"frame","frame":"x","file":"y"}',
-             '{"event":"frame","frame":0,"file":"/etc/passwd"}', '{"event":"frame","frame":0,"file":"../stats.json"}',
-             '{"event":"frame","frame":0,"file":".."}', '{"event":"frame","frame":77,"file":"frame.0000.exr"}',
-             '{"event":"start","frames":-4}', "\u0000\u00ff" * 50, "x" * 200_000]
+    lines = [
+        "",
+        "hello",
+        "{",
+        "[1]",
+        '{"event":7}',
+        '{"event":"frame"}',
+        '{"event":"frame","frame":"x","file":"y"}',
+        '{"event":"frame","frame":0,"file":"/etc/passwd"}',
+        '{"event":"frame","frame":0,"file":"../stats.json"}',
+        '{"event":"frame","frame":0,"file":".."}',
+        '{"event":"frame","frame":77,"file":"frame.0000.exr"}',
+        '{"event":"start","frames":-4}',
+        "\u0000\u00ff" * 50,
+        "x" * 200_000,
+    ]
     job = sheafd.accepted(gltf(lines=lines), {"frames": "0-1"})
     end = sheafd.wait(job)
     assert end["state"] == "done" and [f["frame"] for f in end["frames"]] == [0, 1]
@@ -132,7 +161,9 @@ def test_workers_get_none_of_the_services_descriptors(start: Callable[..., Servi
 def test_a_worker_that_cannot_start(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
     service = start(sheaf=tmp_path / "missing")
     end = service.wait(service.accepted(gltf(), {"frames": 0}))
-    assert end["state"] == "failed" and end["error"]["code"] == "worker-missing" and "missing" in end["error"]["message"]
+    assert (
+        end["state"] == "failed" and end["error"]["code"] == "worker-missing" and "missing" in end["error"]["message"]
+    )
 
 
 def test_jobs_run_side_by_side(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
@@ -149,8 +180,9 @@ def test_jobs_run_side_by_side(start: Callable[..., Service], tmp_path: pathlib.
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_stopping_ends_workers_and_keeps_whole_frames(start: Callable[..., Service], gate: Gate,
-                                                      number: signal.Signals) -> None:
+def test_stopping_ends_workers_and_keeps_whole_frames(
+    start: Callable[..., Service], gate: Gate, number: signal.Signals
+) -> None:
     service = start("--grace", "1")
     job = service.accepted(gltf(gates={"1": gate.path}, stubborn=True), {"frames": "0-1"})
     service.wait_for_frame(job, 0)
@@ -158,7 +190,9 @@ def test_stopping_ends_workers_and_keeps_whole_frames(start: Callable[..., Servi
     os.kill(service.process.pid, number)
     assert service.process.wait(60) == 0
     assert time.monotonic() - began < 10
-    assert [p.name for p in (service.data / "jobs" / job / "frames").iterdir() if p.suffix == ".exr"] == ["frame.0000.exr"]
+    assert [p.name for p in (service.data / "jobs" / job / "frames").iterdir() if p.suffix == ".exr"] == [
+        "frame.0000.exr"
+    ]
 
 
 def test_readiness_follows_the_device(start: Callable[..., Service]) -> None:

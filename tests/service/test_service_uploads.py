@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""What comes in with a job: scenes, files beside them, archives, cameras; and what must not."""
+
+import io
+import json
+import pathlib
+import stat
+import zipfile
+from collections.abc import Callable
+
+import httpx
+import pytest
+from service import Service, arguments, check_problem, glb, gltf
+
+
+def archive(entries: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as zipped:
+        for name, data in entries.items():
+            zipped.writestr(name, data)
+    return out.getvalue()
+
+
+def test_a_gltf_with_its_files(sheafd: Service) -> None:
+    parts = [("file", ("scene.bin", b"buffer")), ("file", ("textures/wood grain.png", b"image"))]
+    job = sheafd.accepted(gltf(), parts=parts)
+    folder = sheafd.data / "jobs" / job / "scene"
+    assert (folder / "scene.bin").read_bytes() == b"buffer"
+    assert (folder / "textures" / "wood grain.png").read_bytes() == b"image"
+
+
+def test_a_camera_is_passed_on(sheafd: Service) -> None:
+    camera = {"version": 1, "keys": []}
+    job = sheafd.accepted(gltf(), {"frames": 0}, parts=[("camera", ("path.json", json.dumps(camera)))])
+    assert sheafd.wait(job)["scene"]["camera"] is True
+    told = [a for a in arguments(sheafd, job) if a.startswith("--camera=")]
+    assert json.loads(pathlib.Path(told[0].removeprefix("--camera=")).read_text()) == camera
+    refused = sheafd.submit(gltf(), {"camera-node": 0}, parts=[("camera", (None, "{}"))])
+    check_problem(refused, 422, "bad-settings")
+    check_problem(sheafd.submit(gltf(), parts=[("camera", (None, "{nope"))]), 400, "malformed-json")
+    check_problem(sheafd.submit(gltf(), parts=[("camera", (None, "[]"))]), 422, "bad-settings")
+
+
+def test_scenes_by_name_media_type_and_content(sheafd: Service) -> None:
+    assert sheafd.wait(sheafd.accepted(glb(), name="C:\\models\\Box.GLB"))["scene"]["name"] == "Box.GLB"
+    untyped = [("scene", ("upload", glb(), "model/gltf-binary"))]
+    assert sheafd.http.post("/v1/jobs", files=untyped).json()["scene"]["name"] == "upload.glb"
+    check_problem(sheafd.submit(b"solid", name="scene.stl"), 415, "unsupported-media-type")
+    check_problem(sheafd.submit(b"", name="scene.gltf"), 422, "bad-scene")
+    check_problem(sheafd.submit(gltf(), name="scene.glb"), 422, "bad-scene")
+    check_problem(sheafd.submit(b"PK nonsense", name="scene.zip"), 422, "bad-scene")
+
+
+def test_a_zipped_scene(sheafd: Service) -> None:
+    zipped = archive({"dir/": b"", "scene.gltf": gltf(), "dir/a.bin": b"1", "__MACOSX/._scene.gltf": b"?"})
+    job = sheafd.wait(sheafd.accepted(zipped, name="scene.zip"))
+    assert job["state"] == "done" and job["scene"]["name"] == "scene.gltf"
+    assert not (sheafd.data / "jobs" / job["id"] / "upload.zip").exists()
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        {"a.gltf": gltf(), "b.glb": glb()},
+        {"dir/a.gltf": gltf()},
+        {"../a.gltf": gltf()},
+        {"/a.gltf": gltf()},
+        {"a.gltf": gltf(), "b/../../c": b""},
+        {"a.gltf": gltf(), "x\\..\\y": b""},
+        {"a.gltf": gltf(), "a.gltf/b": b""},
+        {},
+    ],
+)
+def test_bad_archives(sheafd: Service, entries: dict[str, bytes]) -> None:
+    check_problem(sheafd.submit(archive(entries), name="s.zip"), 422, "bad-scene")
+    assert not list((sheafd.data / "incoming").iterdir())
+
+
+def test_a_link_in_an_archive(sheafd: Service) -> None:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as zipped:
+        zipped.writestr("a.gltf", gltf())
+        link = zipfile.ZipInfo("passwd")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        zipped.writestr(link, "/etc/passwd")
+    assert "link" in check_problem(sheafd.submit(out.getvalue(), name="s.zip"), 422, "bad-scene")["detail"]
+
+
+def test_a_damaged_archive(sheafd: Service) -> None:
+    data = bytearray(archive({"a.gltf": gltf() + b" " * 100}, zipfile.ZIP_STORED))
+    data[60] ^= 1
+    assert "checksum" in check_problem(sheafd.submit(bytes(data), name="s.zip"), 422, "bad-scene")["detail"]
+
+
+def test_archive_bombs(start: Callable[..., Service]) -> None:
+    service = start("--max-unpacked", "8", "--max-zip-entries", "20", "--max-zip-ratio", "100")
+    ratio = check_problem(service.submit(archive({"a.gltf": b" " * 4_000_000}), name="s.zip"), 413, "too-large")
+    assert ratio["limit"] == 100 and "ratio" in ratio["detail"]
+    many = archive({f"{i}": b"" for i in range(21)})
+    assert check_problem(service.submit(many, name="s.zip"), 413, "too-large")["limit"] == 20
+    size = archive({"a.gltf": bytes(range(256)) * 40_000}, zipfile.ZIP_STORED)
+    assert check_problem(service.submit(size, name="s.zip"), 413, "too-large")["limit"] == 8 << 20
+
+
+@pytest.mark.parametrize("name", ["../x.bin", "/etc/x", "a/../b", "a//b", "x\\y", "", ".", "a/" * 20 + "x", "n" * 300])
+def test_bad_file_names(sheafd: Service, name: str) -> None:
+    body = (
+        b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n'
+        b'--b\r\nContent-Disposition: form-data; name="file"; filename="'
+        + name.replace("\\", "\\\\").encode()
+        + b'"\r\n\r\nx\r\n--b--\r\n'
+    )
+    reply = sheafd.http.post("/v1/jobs", content=body, headers={"Content-Type": "multipart/form-data; boundary=b"})
+    check_problem(reply, 422, "bad-scene")
+    assert not list((sheafd.data / "incoming").iterdir())
+
+
+def test_bad_multipart(sheafd: Service) -> None:
+    def post(body: bytes, kind: str = "multipart/form-data; boundary=b") -> httpx.Response:
+        return sheafd.http.post("/v1/jobs", content=body, headers={"Content-Type": kind})
+
+    part = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n'
+    check_problem(post(b"{}", "application/json"), 415, "unsupported-media-type")
+    check_problem(post(b"", "multipart/form-data"), 400, "malformed-multipart")
+    check_problem(post(b""), 400, "malformed-multipart")
+    check_problem(post(part), 400, "malformed-multipart")
+    check_problem(post(part + part + b"--b--"), 400, "malformed-multipart")
+    check_problem(post(part + b"--bogus"), 400, "malformed-multipart")
+    check_problem(post(b"--b\r\n\r\nx\r\n--b--"), 400, "malformed-multipart")
+    check_problem(post(part.replace(b'"scene"', b'"stage"') + b"--b--"), 400, "malformed-multipart")
+    check_problem(sheafd.submit(gltf(), parts=[("settings", (None, "{"))]), 400, "malformed-json")
+    check_problem(sheafd.submit(gltf(), parts=[("settings", (None, "[]"))]), 422, "bad-settings")
+    check_problem(sheafd.http.post("/v1/jobs", files=[("settings", (None, "{}"))]), 422, "bad-scene")
+    twice = [("file", ("a", b"1")), ("file", ("a", b"2"))]
+    check_problem(sheafd.submit(gltf(), parts=twice), 422, "bad-scene")
+    assert not list((sheafd.data / "incoming").iterdir()) and not list((sheafd.data / "jobs").iterdir())
+
+
+def test_uploads_are_bounded(start: Callable[..., Service]) -> None:
+    service = start("--max-upload", "1", "--max-parts", "4")
+    problem = check_problem(service.submit(gltf() + b" " * (2 << 20)), 413, "too-large")
+    assert problem["limit"] == 1 << 20 < problem["value"]
+    parts = [("file", (str(i), b"")) for i in range(4)]
+    assert check_problem(service.submit(gltf(), parts=parts), 413, "too-large")["limit"] == 4
+
+    def chunks():  # no Content-Length: counted as it comes
+        for _ in range(64):
+            yield b" " * 65536
+
+    reply = service.http.post("/v1/jobs", content=chunks(), headers={"Content-Type": "multipart/form-data; boundary=b"})
+    check_problem(reply, 413, "too-large")
+    assert not list((service.data / "incoming").iterdir())
