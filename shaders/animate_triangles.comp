@@ -10,6 +10,7 @@ BUFFER(ROLE_TRIANGLE_B, writeonly, vec3, triangle_b);
 BUFFER(ROLE_TRIANGLE_C, writeonly, vec3, triangle_c);
 BUFFER(ROLE_TRIANGLE_INSTANCE, writeonly, uint, triangle_instance);
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
+BUFFER(ROLE_MATERIALS, readonly, Material, materials);
 BUFFER(ROLE_INDICES, readonly, uint, indices);
 BUFFER(ROLE_POSITIONS, readonly, vec3, positions);
 BUFFER(ROLE_DYNAMIC, readonly, vec3, dynamic_vertices);
@@ -35,5 +36,7 @@ void main() {
   triangle_a[t] = world_position(i, indices[first]);
   triangle_b[t] = world_position(i, indices[first + 1u]);
   triangle_c[t] = world_position(i, indices[first + 2u]);
-  triangle_instance[t] = job.x;
+  uint flags = materials[i.material].flags;
+  triangle_instance[t] = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
+                         ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u);
 }

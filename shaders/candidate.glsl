@@ -13,12 +13,33 @@ struct Nearest {
   uint triangle;
 };
 
-void consider_nearest(uint triangle, Shear s, float tmin, inout Nearest best) {
+// A candidate that its material may yet take back. Looking at materials is rare and costs much, and on a SIMD device code that
+// one lane needs is paid by all: so traversal goes on until no lane can without an answer, and asks for all lanes at once.
+struct Pending {
+  uint triangle;  // NO_INDEX: none
+  float t;
+  vec3 barycentric;
+};
+const Pending NOTHING_PENDING = Pending(NO_INDEX, 0.0, vec3(0));
+
+// A nearer hit, or an equal one of a lower triangle, is taken; where an alpha mask has a say it is left pending.
+void consider_nearest(uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
   TriangleHit h = intersect_scene_triangle(s, triangle, tmin, best.t);
   if (!h.hit || (h.t == best.t && triangle > best.triangle)) return;
-  if (MASKED && masked_out(triangle, h.barycentric)) return;
+  if (MASKED && (triangle_instance[triangle] & TRIANGLE_MASKED) != 0u) {
+    pending = Pending(triangle, h.t, h.barycentric);
+    return;
+  }
   best.t = h.t;
   best.triangle = triangle;
+}
+
+void settle_nearest(inout Nearest best, inout Pending pending) {
+  if (pending.triangle != NO_INDEX && !masked_out(pending.triangle, pending.barycentric)) {
+    best.t = pending.t;
+    best.triangle = pending.triangle;
+  }
+  pending.triangle = NO_INDEX;
 }
 
 struct Shade {      // what a shadow ray has met so far
@@ -36,7 +57,7 @@ ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STO
 // Optical depth of one crossing at t; false where nothing passes. A finite tmax: the ray comes from the light and ends at the
 // lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one left absorbs over t.
 bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 stops) {
-  Instance instance = instances[triangle_instance[triangle]];
+  Instance instance = instances[instance_of(triangle)];
   Material m = materials[instance.material];
   if ((m.flags & MATERIAL_NOT_OPAQUE) == 0u) return false;
   uvec3 v = triangle_vertices(instance, triangle);
@@ -62,11 +83,23 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   return true;
 }
 
-void consider_shadow(uint triangle, Shear s, vec3 direction, float tmin, float tmax, inout Shade shade) {
+void consider_shadow(uint triangle, Shear s, float tmin, float tmax, inout Shade shade, inout Pending pending) {
   TriangleHit h = intersect_scene_triangle(s, triangle, tmin, tmax);
   if (!h.hit) return;
-  if (TRANSLUCENT && crossing(triangle, h.barycentric, direction, h.t, tmax, shade.stops)) return;
+  if (TRANSLUCENT && (triangle_instance[triangle] & (TRIANGLE_MASKED | TRIANGLE_TRANSLUCENT)) != 0u) {
+    pending = Pending(triangle, h.t, h.barycentric);
+    return;
+  }
   shade.blocked = true;
   shade.triangle = triangle;
   shade.t = h.t;
+}
+
+void settle_shadow(vec3 direction, float tmax, inout Shade shade, inout Pending pending) {
+  if (pending.triangle != NO_INDEX && !crossing(pending.triangle, pending.barycentric, direction, pending.t, tmax, shade.stops)) {
+    shade.blocked = true;
+    shade.triangle = pending.triangle;
+    shade.t = pending.t;
+  }
+  pending.triangle = NO_INDEX;
 }

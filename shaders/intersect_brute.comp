@@ -39,13 +39,17 @@ void main() {
     if (ANY_HIT && TRANSLUCENT)
       for (uint c = 0u; c < 3u; ++c) shade.stops[c] = optical_depth[3u * slot + c];
   }
+  Pending pending = NOTHING_PENDING;
   uint tests = 0u;
   for (uint t = push.first; t < push.last && !(ANY_HIT && shade.blocked); ++t) {
     ++tests;
-    if (ANY_HIT)
-      consider_shadow(t, s, ray.direction, ray.tmin, ray.tmax, shade);
-    else
-      consider_nearest(t, s, ray.tmin, best);
+    if (ANY_HIT) {
+      consider_shadow(t, s, ray.tmin, ray.tmax, shade, pending);
+      if (TRANSLUCENT) settle_shadow(ray.direction, ray.tmax, shade, pending);
+    } else {
+      consider_nearest(t, s, ray.tmin, best, pending);
+      if (MASKED) settle_nearest(best, pending);
+    }
   }
   if (ANY_HIT)
     store_shade(slot, shade);

@@ -38,16 +38,19 @@ void main() {
   if (ANY_HIT && known != NO_HIT) return;  // blocked already: no test
   Ray ray = LOAD_RAY(rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
+  Pending pending = NOTHING_PENDING;
   if (ANY_HIT) {
     Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
-    consider_shadow(pair.y, s, ray.direction, ray.tmin, ray.tmax, shade);
+    consider_shadow(pair.y, s, ray.tmin, ray.tmax, shade, pending);
+    if (TRANSLUCENT) settle_shadow(ray.direction, ray.tmax, shade, pending);
     if (shade.blocked) atomicMin(hits[slot], pack_hit(shade.t, shade.triangle));
     if (TRANSLUCENT)
       for (uint c = 0u; c < 3u; ++c)
         if (shade.stops[c] != 0) atomicAdd(optical_depth[3u * slot + c], shade.stops[c]);
   } else {
     Nearest best = Nearest(ray.tmax, NO_INDEX);
-    consider_nearest(pair.y, s, ray.tmin, best);
+    consider_nearest(pair.y, s, ray.tmin, best, pending);
+    if (MASKED) settle_nearest(best, pending);
     if (best.triangle != NO_INDEX) atomicMin(hits[slot], pack_hit(best.t, best.triangle));
   }
   count_tests(push.kind, STAT_RAY_TRIANGLE, 1u);

@@ -149,6 +149,16 @@ SHEAF_CONST ARITY = 4u;
 SHEAF_CONST MAX_LEVELS = 16u;
 SHEAF_CONST OPTICAL_STEP = 4096u;  // steps of the fixed-point optical depth in one stop (factor 2): 2^-13 stops of rounding a crossing
 
+// Surface layers of a pixel.
+SHEAF_CONST LAYER_DEPTH = 0u;
+SHEAF_CONST LAYER_NORMAL = 1u;
+SHEAF_CONST LAYER_POSITION = 4u;
+SHEAF_CONST LAYER_ALBEDO = 7u;
+SHEAF_CONST LAYER_UV = 10u;
+SHEAF_CONST LAYER_OBJECT = 12u;
+SHEAF_CONST LAYER_MATERIAL = 13u;
+SHEAF_CONST LAYER_WORDS = 14u;
+
 // Object hierarchy: 8-wide nodes, 56 words: lo.x[8] lo.y[8] lo.z[8] hi.x[8] hi.y[8] hi.z[8] child[8].
 SHEAF_CONST WIDE = 8u;
 SHEAF_CONST NODE_WORDS = 56u;
@@ -166,6 +176,10 @@ SHEAF_CONST MATERIAL_BLEND = 2u;
 SHEAF_CONST MATERIAL_UNLIT = 4u;
 SHEAF_CONST MATERIAL_VOLUME = 8u;
 SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
+// Words of ROLE_TRIANGLE_INSTANCE: the instance, and whether a hit needs a second look: bit 31 alpha mask, bit 30 lets light pass.
+SHEAF_CONST TRIANGLE_MASKED = 0x80000000u;
+SHEAF_CONST TRIANGLE_TRANSLUCENT = 0x40000000u;
+SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x3FFFFFFFu;
 // A triangle of a material with any of these may let light through: shadow rays look closer.
 SHEAF_CONST MATERIAL_NOT_OPAQUE = MATERIAL_MASK | MATERIAL_BLEND | MATERIAL_TRANSMISSIVE;
 

@@ -55,7 +55,7 @@ vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 
 }
 
 Surface surface_at(uint triangle, vec3 b, vec3 direction) {
-  Instance instance = instances[triangle_instance[triangle]];
+  Instance instance = instances[instance_of(triangle)];
   Material material = materials[instance.material];
   uvec3 v = triangle_vertices(instance, triangle);
   vec3 v0 = triangle_a[triangle], v1 = triangle_b[triangle], v2 = triangle_c[triangle];

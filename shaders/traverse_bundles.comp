@@ -32,7 +32,7 @@ layout(push_constant) uniform Push { uint kind; } push;
 shared float r_ox[BUNDLE], r_oy[BUNDLE], r_oz[BUNDLE], r_ix[BUNDLE], r_iy[BUNDLE], r_iz[BUNDLE];
 shared float r_sx[BUNDLE], r_sy[BUNDLE], r_sz[BUNDLE], r_tmin[BUNDLE], r_t[BUNDLE];
 shared uint r_axis[BUNDLE], r_slot[BUNDLE], r_triangle[BUNDLE];
-shared float r_dx[BUNDLE], r_dy[BUNDLE], r_dz[BUNDLE], r_end[BUNDLE];  // shadow rays through translucent surfaces only
+shared float r_dx[BUNDLE], r_dy[BUNDLE], r_dz[BUNDLE], r_end[BUNDLE];  // direction; far limit, or t where blocked
 shared int r_stops[3 * BUNDLE];
 shared uint stack[STACK_SIZE];     // node · WIDE + child
 shared float entries[STACK_SIZE];
@@ -74,11 +74,11 @@ Beam load_bundle(uint bundle) {
     r_t[k] = k < ray_count ? ray.tmax : -INFINITY;
     r_slot[k] = slot;
     r_triangle[k] = NO_INDEX;
+    r_end[k] = ray.tmax;
     if (ANY_HIT && TRANSLUCENT) {
       r_dx[k] = ray.direction.x;
       r_dy[k] = ray.direction.y;
       r_dz[k] = ray.direction.z;
-      r_end[k] = ray.tmax;
       for (uint c = 0u; c < 3u; ++c) r_stops[c * BUNDLE + k] = 0;
     }
     olo = min(olo, ray.origin);
@@ -125,43 +125,99 @@ float bundle_entry(Beam b, RayNode cone, uint node, uint c, float farthest) {
   return max(entry, b.tmin);
 }
 
+// Hits that a material may take back wait in a queue: asking materials takes long, so it is done for a full vector at a time.
+const uint QUEUE = 128u;
+shared uint q_ray[QUEUE], q_triangle[QUEUE];
+shared float q_t[QUEUE];
+uint queued = 0u;  // the same in all lanes
+
+bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
+
+Shear shear_of(uint k) {
+  return Shear(vec3(r_ox[k], r_oy[k], r_oz[k]), vec3(r_ix[k], r_iy[k], r_iz[k]), r_sx[k], r_sy[k], r_sz[k], r_axis[k]);
+}
+
+void settle_shadow_entry(uint e) {
+  uint k = q_ray[e];
+  TriangleHit h = intersect_scene_triangle(shear_of(k), q_triangle[e], r_tmin[k], r_end[k]);
+  ivec3 stops = ivec3(0);
+  if (crossing(q_triangle[e], h.barycentric, vec3(r_dx[k], r_dy[k], r_dz[k]), q_t[e], r_end[k], stops)) {
+    for (uint c = 0u; c < 3u; ++c) atomicAdd(r_stops[c * BUNDLE + k], stops[c]);
+  } else {
+    r_triangle[k] = q_triangle[e];
+    r_t[k] = -INFINITY;
+  }
+}
+
+void settle_queue() {
+  if (queued == 0u) return;
+  sync();
+  for (uint e = gl_LocalInvocationID.x; e < queued; e += gl_WorkGroupSize.x) {
+    if (ANY_HIT) {
+      settle_shadow_entry(e);
+      continue;
+    }
+    uint k = q_ray[e];
+    TriangleHit h = intersect_scene_triangle(shear_of(k), q_triangle[e], r_tmin[k], INFINITY);
+    if (masked_out(q_triangle[e], h.barycentric)) q_triangle[e] = NO_INDEX;
+  }
+  sync();
+  if (!ANY_HIT)
+    for (uint e = 0u; e < queued; ++e) {  // one after the other: several may be of one ray
+      uint k = q_ray[e];
+      bool nearer = q_triangle[e] != NO_INDEX && (q_t[e] < r_t[k] || (q_t[e] == r_t[k] && q_triangle[e] < r_triangle[k]));
+      sync();
+      if (nearer && gl_LocalInvocationID.x == 0u) {
+        r_t[k] = q_t[e];
+        r_triangle[k] = q_triangle[e];
+      }
+      sync();
+    }
+  queued = 0u;
+}
+
+void queue_pending(uint k, Pending pending) {
+  uvec4 waiting = subgroupBallot(pending.triangle != NO_INDEX);
+  uint count = subgroupBallotBitCount(waiting);
+  if (pending.triangle != NO_INDEX) {
+    uint at = queued + subgroupBallotExclusiveBitCount(waiting);
+    q_ray[at] = k;
+    q_triangle[at] = pending.triangle;
+    q_t[at] = pending.t;
+  }
+  queued += count;
+  if (queued + gl_WorkGroupSize.x > QUEUE) settle_queue();
+}
+
 void test_vector(uint k, uint child, vec3 lo, vec3 hi) {
-  vec3 o = vec3(r_ox[k], r_oy[k], r_oz[k]);
-  vec3 inverse = vec3(r_ix[k], r_iy[k], r_iz[k]);
-  float t = r_t[k], tmin = r_tmin[k];
-  vec2 range = slab(o, inverse, lo, hi);
-  bool enters = range.x <= range.y && range.y >= tmin && range.x <= t;
+  Shear s = shear_of(k);
+  float tmin = r_tmin[k];
+  vec2 range = slab(s.origin, s.inverse, lo, hi);
+  bool enters = range.x <= range.y && range.y >= tmin && range.x <= r_t[k];
   if (k < ray_count) ++box_tests;
   if (!subgroupAny(enters)) return;
-  Shear s = Shear(o, inverse, r_sx[k], r_sy[k], r_sz[k], r_axis[k]);
-  Nearest best = Nearest(t, r_triangle[k]);
-  Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
-  vec3 direction = vec3(0);
-  if (ANY_HIT && TRANSLUCENT) {
-    direction = vec3(r_dx[k], r_dy[k], r_dz[k]);
-    shade.stops = ivec3(r_stops[k], r_stops[BUNDLE + k], r_stops[2u * BUNDLE + k]);
-  }
   uint first = child & 0x07FFFFFFu, count = ((child >> 27) & 15u) + 1u;
   for (uint i = first; i < first + count; ++i) {
-    if (!enters || (ANY_HIT && shade.blocked)) continue;
-    ++triangle_tests;
-    if (ANY_HIT)
-      consider_shadow(i, s, direction, tmin, TRANSLUCENT ? r_end[k] : t, shade);
-    else
-      consider_nearest(i, s, tmin, best);
-  }
-  if (!enters) return;
-  if (ANY_HIT) {
-    if (shade.blocked) {
-      r_triangle[k] = shade.triangle;
-      r_end[k] = shade.t;
-      r_t[k] = -INFINITY;  // nothing more to find
+    float t = r_t[k];
+    Pending pending = NOTHING_PENDING;
+    if (enters && t > -INFINITY) {
+      ++triangle_tests;
+      if (ANY_HIT) {
+        Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+        consider_shadow(i, s, tmin, t, shade, pending);
+        if (shade.blocked) {
+          r_triangle[k] = i;
+          r_end[k] = shade.t;
+          r_t[k] = -INFINITY;  // nothing more to find
+        }
+      } else {
+        Nearest best = Nearest(t, r_triangle[k]);
+        consider_nearest(i, s, tmin, best, pending);
+        r_t[k] = best.t;
+        r_triangle[k] = best.triangle;
+      }
     }
-    if (TRANSLUCENT)
-      for (uint c = 0u; c < 3u; ++c) r_stops[c * BUNDLE + k] = shade.stops[c];
-  } else {
-    r_t[k] = best.t;
-    r_triangle[k] = best.triangle;
+    if (asks_materials()) queue_pending(k, pending);
   }
 }
 
@@ -218,8 +274,9 @@ void walk(Beam beam, RayNode cone) {
     child_bounds(node, c, lo, hi);
     for (uint k = gl_LocalInvocationID.x; k < BUNDLE; k += gl_WorkGroupSize.x) test_vector(k, child, lo, hi);
     farthest = farthest_hit();
-    if (ANY_HIT && !(farthest > -INFINITY)) return;  // every ray is blocked
+    if (ANY_HIT && !(farthest > -INFINITY)) break;  // every ray is blocked
   }
+  if (asks_materials()) settle_queue();
 }
 
 void main() {

@@ -79,7 +79,16 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   m.frame = Buffer(device, "frame", sizeof(gpu::Frame));
   m.stats = Buffer(device, "stats", gpu::STAT_WORDS * 8);
   m.stats_readback = Buffer(device, "stats", gpu::STAT_WORDS * 8, Kind::readback);
-  if (settings.layers.tests) m.pixel_tests = Buffer(device, "tests of a pixel", pixels * 4);
+  m.records = Buffer(device, "records", std::uint64_t{max_records} * gpu::COUNT_WORDS * 4);
+  m.records_readback = Buffer(device, "records", std::uint64_t{max_records} * gpu::COUNT_WORDS * 4, Kind::readback);
+  if (settings.layers.tests) {
+    m.pixel_tests = Buffer(device, "tests of a pixel", pixels * 4);
+    m.pixel_tests_readback = Buffer(device, "tests of a pixel", pixels * 4, Kind::readback);
+  }
+  if (settings.layers.any_surface()) {
+    m.layers = Buffer(device, "layers", pixels * gpu::LAYER_WORDS * 4);
+    m.layers_readback = Buffer(device, "layers", pixels * gpu::LAYER_WORDS * 4, Kind::readback);
+  }
   if (plan.sorts) make_sort_memory(device, m);
   if (plan.ray_hierarchy) {
     // Levels 1 and up of arity 4: a third of the rays, and at most one node more a level.

@@ -22,6 +22,8 @@ struct RayList {
   }
 };
 
+inline constexpr std::uint32_t max_records = 4096;
+
 struct RayMemory {
   std::uint32_t capacity = 0;     // slots of a list
   std::uint32_t tile_pixels = 0;  // most pixels of a tile
@@ -29,7 +31,8 @@ struct RayMemory {
   std::array<RayList, 2> reflection, refraction;  // generations take turns; reflection[1] also holds the primary rays
   Buffer counters, args, block_sums, accumulation, visibility, output, readback, counters_readback;
   Buffer keys, order_kept, chunks, chunks_alt, digits, skeleton, ray_nodes, bundle_flags, bundle_list;
-  Buffer pixel_tests, layers, stats, stats_readback, frame;
+  Buffer pixel_tests, pixel_tests_readback, layers, layers_readback, stats, stats_readback, frame;
+  Buffer records, records_readback;  // the counters as they stood after each list was traced, for the stats
 };
 
 /// Throws Error{limit} where the budget is too small for one pixel with these lights.

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "stages/sort.hpp"
 
 namespace sheaf {
 namespace {
@@ -38,6 +39,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Features& fea
       shade_(device, features_, settings.counted),
       resolve_(device) {
   if (plan_.raster) raster_.emplace(device, features_);
+  if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
   tracer_ = make_tracer({device_, scene_, memory_, plan_, features_, settings_, strategy, settings.counted});
 }
 
@@ -88,7 +90,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   RenderedFrame out;
   out.layers.width = settings_.width;
   out.layers.height = settings_.height;
-  out.layers.rgba.resize(std::size_t{settings_.width} * settings_.height * 4);
+  allocate_layers(settings_.layers, out.layers);
   out.stats.frame = request.number;
   out.stats.time_s = request.time_s;
   out.stats.counted = settings_.counted;
@@ -100,7 +102,12 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   animate_.record(recorder_, scene_, motion);
   objects_.record(recorder_, scene_, motion);
   tracer_->objects_moved(recorder_, motion);
+  if (dump_ != nullptr) {
+    dump_->begin(request.number);
+    list_dump_->triangles(recorder_, *dump_);
+  }
   render_tiles(request, whole, out);
+  if (dump_ != nullptr) dump_->end();
 
   const auto times = recorder_.take_times();
   for (const char* name : stage_names)
@@ -137,17 +144,24 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   recorder_.stage("generate");
   recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
   recorder_.fill(memory_.stats, 0);
+  records_.clear();
   if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
-  for (std::uint32_t sample = 0; sample < settings_.samples; ++sample)
-    if (!render_sample(request, sample, tile, out)) return false;
+  if (dump_ != nullptr) dump_->mark();
+  for (std::uint32_t sample = 0; sample < settings_.samples; ++sample) {
+    if (render_sample(request, sample, tile)) continue;
+    if (dump_ != nullptr) dump_->rewind();
+    return false;
+  }
   resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples);
   recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
+  if (memory_.pixel_tests) recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
+  recorder_.copy(memory_.records, memory_.records_readback, records_.size() * gpu::COUNT_WORDS * 4);
   recorder_.submit_and_wait();
   store_tile(tile, out);
   return true;
 }
 
-bool Renderer::render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile, RenderedFrame&) {
+bool Renderer::render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile) {
   set_frame(request.camera, sample, tile);
   recorder_.fill(memory_.counters, 0);
   if (raster_) raster_->record(recorder_, scene_, memory_, tile, settings_.width, settings_.height);
@@ -156,6 +170,8 @@ bool Renderer::render_sample(const FrameRequest& request, std::uint32_t sample, 
     compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, tile.pixels());
     tracer_->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
   }
+  if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, tile.pixels());
+  if (layers_ && sample == 0) layers_->record(recorder_, memory_, tile.pixels());
   generate_.secondary(recorder_, memory_, 0, true, settings_.depth == 0);
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();
@@ -179,6 +195,50 @@ bool Renderer::render_sample(const FrameRequest& request, std::uint32_t sample, 
 void Renderer::trace(const RayList& list, std::uint32_t kind, std::uint32_t generation) {
   compact_.record(recorder_, list, kind);
   tracer_->trace(recorder_, list, kind, generation);
+  note_record(kind, generation);
+  if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, list, kind, generation, 0);
+}
+
+void Renderer::set_dump(DumpWriter* dump) {
+  dump_ = dump;
+  if (dump != nullptr && !list_dump_) list_dump_.emplace(device_, scene_, memory_);
+}
+
+// The device's counters now say how many rays the list had, how it was sorted and bundled.
+void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
+  if (records_.size() == max_records) return;  // deeper ones count in the totals only
+  recorder_.copy(memory_.counters, memory_.records, gpu::COUNT_WORDS * 4, 0, records_.size() * gpu::COUNT_WORDS * 4);
+  records_.emplace_back(generation, kind);
+}
+
+void Renderer::collect_generations(RenderedFrame& out) {
+  const auto words = memory_.records_readback.view<std::uint32_t>();
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const auto* counters = &words[r * gpu::COUNT_WORDS];
+    const auto [generation, kind] = records_[r];
+    if (counters[gpu::COUNT_RAYS + kind] == 0) continue;
+    auto found = std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
+      return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
+    });
+    if (found == out.stats.generations.end()) {
+      out.stats.generations.push_back({});
+      found = std::prev(out.stats.generations.end());
+      found->index = generation;
+      found->kind = static_cast<RayKind>(kind);
+      found->sort_reason = plan_.sorts ? "key changes in less than one ray of sixteen" : "strategy or --sort off";
+    }
+    found->rays += counters[gpu::COUNT_RAYS + kind];
+    if (!plan_.sorts || kind == gpu::KIND_PRIMARY) continue;
+    const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
+    found->key_bits = layout.bits();
+    found->chunks += counters[gpu::COUNT_CHUNKS];
+    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE];
+    found->tight += counters[gpu::COUNT_TIGHT];
+    if (counters[gpu::COUNT_SORT] != 0) {
+      found->sorted = true;
+      found->sort_reason = settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
+    }
+  }
 }
 
 void Renderer::trace_shadows(std::uint32_t generation) {
@@ -192,11 +252,17 @@ void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
   for (std::uint32_t y = 0; y < tile.height; ++y)
     std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(y) * tile.width * 4, std::size_t{tile.width} * 4,
                 out.layers.rgba.begin() + (static_cast<std::ptrdiff_t>(tile.y + y) * settings_.width + tile.x) * 4);
-  collect_stats(out, false);
+  if (layers_) Layers::store(memory_, tile, scene_.origin(), out.layers);
+  if (!out.layers.tests.empty()) {
+    const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
+    for (std::uint32_t i = 0; i < tile.pixels(); ++i)
+      out.layers.tests[std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width] = static_cast<float>(tests[i]);
+  }
+  collect_stats(out);
+  collect_generations(out);
 }
 
-void Renderer::collect_stats(RenderedFrame& out, bool discard) {
-  if (discard) return;
+void Renderer::collect_stats(RenderedFrame& out) {
   const auto stats = memory_.stats_readback.view<std::uint64_t>();
   for (std::uint32_t kind = 0; kind < ray_kinds; ++kind) {
     const auto* of = &stats[kind * gpu::STAT_FIELDS];
@@ -205,6 +271,12 @@ void Renderer::collect_stats(RenderedFrame& out, bool discard) {
     out.stats.node_object[kind] += of[gpu::STAT_NODE_OBJECT];
     out.stats.ray_box[kind] += of[gpu::STAT_RAY_BOX];
     out.stats.ray_triangle[kind] += of[gpu::STAT_RAY_TRIANGLE];
+    auto& levels = out.stats.node_object_by_level[kind];  // root last: level 0 are the rays
+    for (std::uint32_t l = 0; l < gpu::MAX_LEVELS; ++l) {
+      if (of[gpu::STAT_LEVELS + l] == 0) continue;
+      if (levels.size() <= l) levels.resize(l + 1);
+      levels[l] += of[gpu::STAT_LEVELS + l];
+    }
   }
 }
 

@@ -8,12 +8,14 @@
 #include <string>
 
 #include "frame/device_scene.hpp"
+#include "frame/list_dump.hpp"
 #include "frame/ray_lists.hpp"
 #include "output/exr_writer.hpp"
 #include "output/stats.hpp"
 #include "stages/animate.hpp"
 #include "stages/compact.hpp"
 #include "stages/generate.hpp"
+#include "stages/layers.hpp"
 #include "stages/objects.hpp"
 #include "stages/raster.hpp"
 #include "stages/resolve.hpp"
@@ -21,8 +23,6 @@
 #include "stages/tracer.hpp"
 
 namespace sheaf {
-
-class DumpWriter;
 
 struct FrameRequest {
   std::int64_t number = 0;
@@ -45,18 +45,21 @@ class Renderer {
   [[nodiscard]] RenderedFrame render(const FrameRequest& request);
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const DeviceScene& scene() const { return scene_; }
-  void set_dump(DumpWriter* dump) { dump_ = dump; }
+  /// Every ray traced from now on goes there too; null: no more.
+  void set_dump(DumpWriter* dump);
 
  private:
   void set_frame(const CameraView& camera, std::uint32_t sample, const Tile& tile);
   void render_tiles(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
   [[nodiscard]] bool render_tile(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
-  [[nodiscard]] bool render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile, RenderedFrame& out);
+  [[nodiscard]] bool render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);
   void trace_shadows(std::uint32_t generation);
+  void note_record(std::uint32_t kind, std::uint32_t generation);
+  void collect_generations(RenderedFrame& out);
   void bind_all();
   void store_tile(const Tile& tile, RenderedFrame& out);
-  void collect_stats(RenderedFrame& out, bool discard);
+  void collect_stats(RenderedFrame& out);
 
   const Device& device_;
   const Features features_;
@@ -68,12 +71,15 @@ class Renderer {
   Animate animate_;
   Objects objects_;
   std::optional<Raster> raster_;
+  std::optional<Layers> layers_;
   Generate generate_;
   Compact compact_;
   Shade shade_;
   Resolve resolve_;
   std::unique_ptr<Tracer> tracer_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> records_;  // (generation, kind) of the tile's records
   DumpWriter* dump_ = nullptr;
+  std::optional<ListDump> list_dump_;
 };
 
 }  // namespace sheaf

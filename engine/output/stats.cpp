@@ -60,6 +60,7 @@ Json generation_json(const GenerationStats& generation) {
           {"rays", generation.rays},
           {"chunks", generation.chunks},
           {"nodes", generation.nodes},
+          {"tight", generation.tight},
           {"sorted", generation.sorted},
           {"key_bits", generation.key_bits},
           {"sort_reason", generation.sort_reason},

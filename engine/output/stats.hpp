@@ -28,6 +28,7 @@ struct GenerationStats {
   std::uint32_t index = 0;
   RayKind kind = RayKind::primary;
   std::uint64_t rays = 0, chunks = 0, nodes = 0;
+  std::uint64_t tight = 0;  // of the nodes: bundles that were walked whole
   bool sorted = false;
   std::uint32_t key_bits = 0;
   std::string sort_reason;                     // why it was sorted, or not

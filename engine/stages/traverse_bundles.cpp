@@ -36,7 +36,7 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
   const struct {
     std::uint32_t kind;
     float widest;
-  } push{kind, kind == gpu::KIND_SHADOW ? 0.05F : 0.1F};
+  } push{kind, kind == gpu::KIND_SHADOW ? 0.02F : 0.04F};
   recorder.dispatch_indirect(bundles_, push, gpu::ARGS_BUNDLE_RUNS);
   loose_.record(recorder, {kind, 0, 0}, gpu::ARGS_BUNDLE_BLOCKS);
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "frame/list_dump.hpp"
+
+#include <bit>
+#include <numeric>
+
+namespace sheaf {
+
+ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory) : scene_(scene), memory_(memory) {
+  using Kind = Buffer::Kind;
+  corners_ = Buffer(device, "dump", std::uint64_t{scene.triangles()} * 12, Kind::readback);
+  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_WORDS * 4, Kind::readback);
+  hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
+  order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
+  counters_ = Buffer(device, "dump", gpu::COUNT_WORDS * 4, Kind::readback);
+}
+
+void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
+  const std::size_t count = scene_.triangles();
+  host_corners_.assign(count * 9, 0);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    recorder.copy(scene_.triangle_corner(k), corners_, count * 12);
+    recorder.submit_and_wait();
+    const auto from = corners_.view<float>();
+    for (std::size_t t = 0; t < count; ++t)
+      for (std::size_t c = 0; c < 3; ++c) host_corners_[t * 9 + k * 3 + c] = from[t * 3 + c];
+  }
+  writer.triangles(host_corners_, scene_.origin());
+}
+
+// u, v as most tracers give them: P = (1 − u − v)·v0 + u·v1 + v·v2.
+HitRecord ListDump::record_of(const float* ray, std::uint32_t triangle, float t) const {
+  HitRecord record;
+  if (triangle == gpu::NO_INDEX) return record;
+  auto corner = [&](std::size_t k) {
+    const float* p = &host_corners_[triangle * std::size_t{9} + k * 3];
+    return glm::dvec3(p[0], p[1], p[2]);
+  };
+  const glm::dvec3 o(ray[0], ray[1], ray[2]), d(ray[4], ray[5], ray[6]);
+  const glm::dvec3 e1 = corner(1) - corner(0), e2 = corner(2) - corner(0), s = o - corner(0);
+  const glm::dvec3 p = glm::cross(d, e2), q = glm::cross(s, e1);
+  const double det = glm::dot(e1, p);
+  record.t = t;
+  record.triangle = static_cast<std::int32_t>(triangle);
+  if (det != 0) {
+    record.u = static_cast<float>(glm::dot(s, p) / det);
+    record.v = static_cast<float>(glm::dot(d, q) / det);
+  }
+  return record;
+}
+
+void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list, std::uint32_t kind, std::uint32_t generation,
+                    std::uint32_t slots) {
+  recorder.copy(list.rays, rays_, list.rays.bytes());
+  recorder.copy(list.hits, hits_, list.hits.bytes());
+  recorder.copy(list.order, order_, list.order.bytes());
+  recorder.copy(memory_.counters, counters_, gpu::COUNT_WORDS * 4);
+  recorder.submit_and_wait();
+  const std::size_t count = slots != 0 ? slots : counters_.view<std::uint32_t>()[gpu::COUNT_RAYS + kind];
+  const auto words = rays_.view<float>();
+  const auto found = hits_.view<glm::uvec2>();
+  const auto order = order_.view<std::uint32_t>();
+  std::vector<float> rays;
+  std::vector<HitRecord> hits;
+  rays.reserve(count * 8);
+  hits.reserve(count);
+  constexpr std::uint32_t fields[8] = {gpu::RAY_ORIGIN,    gpu::RAY_ORIGIN + 1,    gpu::RAY_ORIGIN + 2,    gpu::RAY_TMIN,
+                                       gpu::RAY_DIRECTION, gpu::RAY_DIRECTION + 1, gpu::RAY_DIRECTION + 2, gpu::RAY_TMAX};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t slot = slots != 0 ? i : order[i];
+    for (const auto field : fields) rays.push_back(words[std::size_t{field} * memory_.capacity + slot]);
+    hits.push_back(record_of(&rays[rays.size() - 8], found[slot].x, std::bit_cast<float>(found[slot].y)));
+  }
+  writer.rays(generation, kind, rays, hits);
+}
+
+}  // namespace sheaf

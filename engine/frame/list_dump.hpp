@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Reads a traced list back for `--dump`.
+#pragma once
+
+#include "frame/device_scene.hpp"
+#include "frame/dump_writer.hpp"
+#include "frame/ray_lists.hpp"
+#include "vulkan/recorder.hpp"
+
+namespace sheaf {
+
+class ListDump {
+ public:
+  ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory);
+  /// The frame's triangles, once they are on the device.
+  void triangles(Recorder& recorder, DumpWriter& writer);
+  /// `slots`: not 0 where the list has no order, being whole.
+  void list(Recorder& recorder, DumpWriter& writer, const RayList& list, std::uint32_t kind, std::uint32_t generation,
+            std::uint32_t slots);
+
+ private:
+  [[nodiscard]] HitRecord record_of(const float* ray, std::uint32_t triangle, float t) const;
+
+  const DeviceScene& scene_;
+  const RayMemory& memory_;
+  Buffer corners_, rays_, hits_, order_, counters_;
+  std::vector<float> host_corners_;  // 9 a triangle
+};
+
+}  // namespace sheaf

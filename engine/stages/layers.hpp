@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Surface layers (`--aov`): what the camera's rays of sample 0 saw first.
+#pragma once
+
+#include "frame/device_scene.hpp"
+#include "frame/ray_lists.hpp"
+#include "output/exr_writer.hpp"
+#include "stages/raster.hpp"
+#include "vulkan/kernel.hpp"
+
+namespace sheaf {
+
+class Layers {
+ public:
+  Layers(const Device& device, const Plan& plan, const Features& features);
+  void record(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels) const;
+  /// From the read-back buffer into the frame; positions become absolute.
+  static void store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, FrameLayers& out);
+
+ private:
+  Kernel layers_;
+};
+
+/// Sizes the vectors of the layers asked for.
+void allocate_layers(const LayerSet& wanted, FrameLayers& layers);
+
+}  // namespace sheaf
