@@ -18,7 +18,7 @@ sanitized_tests() { # PRESET SUBJECT...
   ((code == 0)) || return "$code"
   sanitized "$preset-ctest" ctest --preset "$preset" --parallel "$jobs" --timeout 600 --no-tests=error
   SHEAF_BUILD=$PWD/build-$preset sanitized "$preset-service" \
-    "$venv/bin/pytest" -c client/pyproject.toml --rootdir . -q -p no:cacheprovider tests/service
+    "$venv/bin/pytest" -q -p no:cacheprovider tests/service
 }
 
 sanitized() { # LOG COMMAND...
