@@ -39,7 +39,7 @@ void main() {
   // From the box of directions, unit vectors all: |d − axis| bounds the chord, and the angle is 2·asin(chord/2).
   vec3 far_corner = max(abs(dlo - axis), abs(dhi - axis));
   float chord = length(far_corner);
-  float angle = size > 1e-3 && chord < 1.4 ? 2.0 * asin(min(0.5 * chord, 1.0)) : 4.0;
+  float angle = size > 1e-3 && chord < 1.4 ? 2.0 * arc(0.5 * chord, sqrt(1.0 - 0.25 * chord * chord)) : 4.0;
   float radius = length(0.5 * (hi - lo));
   uint at = bundle * RAY_NODE_WORDS;
   ray_nodes[at] = centre.x;
