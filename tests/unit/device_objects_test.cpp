@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+// Bounds of objects: spheres round triangles and instances, boxes of the object hierarchy after a refit.
+#include <algorithm>
+#include <cmath>
+
+#include "device_fixture.hpp"
+#include "hierarchy/object_hierarchy.hpp"
+
+namespace sheaf::test {
+namespace {
+
+struct Triangle {
+  glm::vec3 a, b, c;
+};
+using Triangles = std::vector<Triangle>;
+
+/// box_pad as DeviceScene chooses it: 2^-21 of the largest coordinate, rounded up to a power of two.
+float pad_of(const Triangles& triangles) {
+  float largest = 1e-30F;
+  for (const auto& t : triangles)
+    for (const auto& p : {t.a, t.b, t.c})
+      for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
+  return std::exp2(std::ceil(std::log2(largest)) - 21);
+}
+
+Triangle some_triangle(Dice& dice, const glm::dvec3& place, double size) {
+  auto corner = [&] { return glm::vec3(place + dice.cube() * size); };
+  Triangle t{corner(), corner(), corner()};
+  switch (dice.below(12)) {
+    case 0:
+      t.c = t.a;
+      break;  // a repeated vertex
+    case 1:
+      t.b = t.c = t.a;
+      break;  // a point
+    case 2:
+      t.c = glm::vec3((glm::dvec3(t.a) + glm::dvec3(t.b)) * 0.5);
+      break;  // a line
+    case 3:
+      t.c = t.a + (t.b - t.a) * 0.3F + glm::vec3(dice.cube() * size * 1e-6);
+      break;  // a sliver, obtuse
+    case 4:
+      t.c = t.b + glm::vec3(dice.cube() * size * 1e-6);
+      break;  // a needle, nearly right-angled
+    case 5:
+      t.b = t.a + glm::vec3(static_cast<float>(size), 0, 0), t.c = t.a + glm::vec3(0, static_cast<float>(size), 0);
+      break;
+    default:
+      break;
+  }
+  return t;
+}
+
+struct Soup {
+  std::string name;
+  Triangles triangles;
+};
+
+std::vector<Soup> soups() {
+  std::vector<Soup> all;
+  auto add = [&](const char* name, std::size_t count, auto make) {
+    Dice dice(static_cast<std::uint32_t>(all.size()));
+    all.push_back({name, {}});
+    while (all.back().triangles.size() < count) all.back().triangles.push_back(make(dice));
+  };
+  add("unit", 5000, [](Dice& d) { return some_triangle(d, d.cube(), 0.1); });
+  add("tiny", 2000, [](Dice& d) { return some_triangle(d, d.cube() * 1e-6, 1e-7); });
+  add("huge", 2000, [](Dice& d) { return some_triangle(d, d.cube() * 1e6, 1e6); });
+  add("far", 2000, [](Dice& d) { return some_triangle(d, glm::dvec3(1e7, -1e7, 3e6) + d.cube() * 100.0, 10); });
+  add("all sizes", 5000, [](Dice& d) { return some_triangle(d, d.cube(), d.magnitude(1e-6, 1)); });
+  add("one", 1, [](Dice& d) { return some_triangle(d, d.cube(), 1); });
+  add("sixty-five", 65, [](Dice& d) { return some_triangle(d, d.cube(), 1); });
+  return all;
+}
+
+class OnDevice {
+ public:
+  OnDevice(const Triangles& triangles, const std::vector<gpu::Instance>& instances) : recorder_(device()) {
+    std::vector<glm::vec3> corners[3];
+    for (const auto& t : triangles) {
+      corners[0].push_back(t.a);
+      corners[1].push_back(t.b);
+      corners[2].push_back(t.c);
+    }
+    gpu::Frame frame{};
+    frame.triangles = static_cast<std::uint32_t>(triangles.size());
+    frame.instances = static_cast<std::uint32_t>(instances.size());
+    frame.box_pad = pad_of(triangles);
+    frame_ = buffer_of(std::vector{frame});
+    instances_ = buffer_of(instances);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      corners_[k] = buffer_of(corners[k]);
+      recorder_.bind(ROLE_TRIANGLE_A + k, corners_[k]);
+    }
+    recorder_.bind(ROLE_FRAME, frame_);
+    recorder_.bind(ROLE_INSTANCES, instances_);
+  }
+  Recorder& recorder() { return recorder_; }
+
+ private:
+  Buffer frame_, instances_, corners_[3];
+  Recorder recorder_;
+};
+
+double distance(const glm::vec3& p, const glm::vec4& sphere) { return glm::length(glm::dvec3(p) - glm::dvec3(sphere)); }
+
+double farthest(const Triangle& t, const glm::vec4& sphere) {
+  return std::max({distance(t.a, sphere), distance(t.b, sphere), distance(t.c, sphere)});
+}
+
+/// Radius of the smallest sphere round a triangle.
+double least_radius(const Triangle& t) {
+  const glm::dvec3 a(t.a), b(t.b), c(t.c);
+  double side[3] = {glm::length(b - c), glm::length(c - a), glm::length(a - b)};
+  std::sort(std::begin(side), std::end(side));
+  if (side[2] * side[2] >= side[0] * side[0] + side[1] * side[1]) return side[2] / 2;
+  return side[0] * side[1] * side[2] / (2 * glm::length(glm::cross(b - a, c - a)));
+}
+
+TEST(DeviceSpheres, HoldTheirTrianglesAndLittleElse) {
+  const Kernel kernel(device(), "objects_spheres");
+  for (const auto& [name, triangles] : soups()) {
+    OnDevice scene(triangles, {});
+    const Output<glm::vec4> spheres(triangles.size()), unused(1);
+    scene.recorder().bind(ROLE_SPHERES, spheres.buffer());
+    scene.recorder().bind(ROLE_MESH_SPHERES, unused.buffer());
+    scene.recorder().dispatch(kernel, 0U, blocks_of(triangles.size(), gpu::GROUP) + 1ULL);
+    scene.recorder().submit_and_wait();
+    const double pad = pad_of(triangles);
+    const auto got = spheres.values();
+    std::size_t loose = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      ASSERT_LE(farthest(triangles[i], got[i]), got[i].w) << name << ", triangle " << i;
+      // Needles and slivers lose digits to their own shape; they may be larger, but not by half.
+      loose += got[i].w > least_radius(triangles[i]) * 1.001 + 4 * pad ? 1 : 0;
+      ASSERT_LE(got[i].w, least_radius(triangles[i]) * 1.5 + 4 * pad) << name << ", triangle " << i;
+    }
+    EXPECT_LE(loose, triangles.size() / 20) << name;
+  }
+}
+
+TEST(DeviceSpheres, OfInstancesHoldAllTheirTriangles) {
+  const Kernel kernel(device(), "objects_spheres");
+  for (const auto& [name, triangles] : soups()) {
+    Dice dice(4);
+    std::vector<gpu::Instance> instances;
+    for (std::uint32_t first = 0; first < triangles.size();) {
+      gpu::Instance instance{};
+      instance.first_triangle = first;
+      instance.triangle_count =
+          std::min<std::uint32_t>(1 + dice.below(100), static_cast<std::uint32_t>(triangles.size()) - first);
+      first += instance.triangle_count;
+      instances.push_back(instance);
+    }
+    OnDevice scene(triangles, instances);
+    const Output<glm::vec4> spheres(instances.size()), unused(1);
+    scene.recorder().bind(ROLE_SPHERES, unused.buffer());
+    scene.recorder().bind(ROLE_MESH_SPHERES, spheres.buffer());
+    scene.recorder().dispatch(kernel, 1U, blocks_of(instances.size(), gpu::GROUP));
+    scene.recorder().submit_and_wait();
+    const auto got = spheres.values();
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      double reach = 0;
+      for (std::uint32_t t = 0; t < instances[i].triangle_count; ++t)
+        reach = std::max(reach, farthest(triangles[instances[i].first_triangle + t], got[i]));
+      ASSERT_LE(reach, got[i].w) << name << ", instance " << i;
+      ASSERT_LE(got[i].w, reach * 1.0001 + 4.0 * pad_of(triangles)) << name << ", instance " << i;
+    }
+  }
+}
+
+Box box_of(const Triangle& t) { return {glm::min(glm::min(t.a, t.b), t.c), glm::max(glm::max(t.a, t.b), t.c)}; }
+
+void merge(Box& into, const Box& box) {
+  into.lo = glm::min(into.lo, box.lo);
+  into.hi = glm::max(into.hi, box.hi);
+}
+
+/// What a child's box must be, bit for bit: its triangles' box, widened by box_pad once.
+Box expected_box(const ObjectHierarchy& tree, std::uint32_t child, const Triangles& triangles, float pad) {
+  Box box{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
+  if (is_leaf(child)) {
+    for (std::uint32_t i = 0; i < leaf_count(child); ++i) merge(box, box_of(triangles[leaf_first(child) + i]));
+    return {box.lo - pad, box.hi + pad};
+  }
+  for (const auto below : tree.nodes[child].child)
+    if (below != empty_child) merge(box, expected_box(tree, below, triangles, pad));
+  return box;
+}
+
+void expect_refitted(const ObjectHierarchy& tree, const std::vector<float>& words, const Triangles& triangles) {
+  const float pad = pad_of(triangles);
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n)
+    for (std::uint32_t c = 0; c < wide; ++c) {
+      const float* at = &words[n * gpu::NODE_WORDS + c];
+      const Box got{{at[0], at[wide], at[2 * wide]}, {at[3 * wide], at[4 * wide], at[5 * wide]}};
+      const auto child = tree.nodes[n].child[c];
+      const Box expected = child == empty_child ? Box{glm::vec3(INFINITY), glm::vec3(-INFINITY)}
+                                                : expected_box(tree, child, triangles, pad);
+      ASSERT_EQ(got.lo, expected.lo) << "node " << n << ", child " << c;
+      ASSERT_EQ(got.hi, expected.hi) << "node " << n << ", child " << c;
+    }
+}
+
+std::vector<float> refit(const Kernel& kernel, const ObjectHierarchy& tree, const Triangles& triangles) {
+  std::vector<std::uint32_t> words(tree.nodes.size() * gpu::NODE_WORDS,
+                                   0x7FC00000U);  // NaN: what was there must not matter
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n)
+    std::copy(tree.nodes[n].child.begin(), tree.nodes[n].child.end(), &words[n * gpu::NODE_WORDS + gpu::NODE_CHILD]);
+  const std::uint32_t highest = *std::max_element(tree.height.begin(), tree.height.end());
+  std::vector<std::vector<std::uint32_t>> heights(highest + 1);
+  for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) heights[tree.height[n]].push_back(n);
+  std::vector<std::uint32_t> list;
+  for (const auto& nodes : heights) list.insert(list.end(), nodes.begin(), nodes.end());
+  OnDevice scene(triangles, {});
+  const Buffer nodes = buffer_of(words), work = buffer_of(list);
+  scene.recorder().bind(ROLE_NODES, nodes);
+  scene.recorder().bind(ROLE_WORK, work);
+  std::uint32_t first = 0;
+  for (const auto& level : heights) {
+    const struct { std::uint32_t first, count; } push{first, static_cast<std::uint32_t>(level.size())};
+    scene.recorder().dispatch(kernel, push, blocks_of(level.size() * wide, gpu::GROUP));
+    first += push.count;
+  }
+  return read<float>(scene.recorder(), nodes, words.size());
+}
+
+TEST(DeviceRefit, BoxesAreThoseOfTheirTriangles) {
+  const Kernel kernel(device(), "objects_refit");
+  for (const auto& [name, triangles] : soups()) {
+    SCOPED_TRACE(name);
+    std::vector<Box> boxes;
+    for (const auto& t : triangles) boxes.push_back(box_of(t));
+    const ObjectHierarchy tree = build_object_hierarchy(boxes);
+    Triangles placed;
+    for (const auto place : tree.order) placed.push_back(triangles[place]);
+    expect_refitted(tree, refit(kernel, tree, placed), placed);
+    Dice dice(6);
+    for (auto& t : placed) {  // deformed beyond recognition
+      const glm::vec3 shift(dice.cube() * 3.0);
+      t = {t.a + shift, t.b * 2.0F, t.c - shift};
+    }
+    expect_refitted(tree, refit(kernel, tree, placed), placed);
+  }
+}
+
+}  // namespace
+}  // namespace sheaf::test
