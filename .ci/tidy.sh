@@ -15,7 +15,7 @@ change_base() { # empty where there is nothing to compare with
 }
 
 tidy_changed() {
-  local base files file begun=$SECONDS left
+  local base files
   base=$(change_base)
   [[ -n $base ]] || { echo "no earlier commit to compare with"; return 0; }
   mapfile -t files < <(git diff --name-only --diff-filter=d "$base" -- 'engine/*.cpp' 'server/*.cpp' 'tests/*.cpp' |
@@ -24,30 +24,32 @@ tidy_changed() {
   # A precompiled header is the compiler's own: clang-tidy cannot read it.
   quietly tidy-configure cmake -G Ninja -B build/tidy -S . -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
     -DBUILD_TESTING=ON -Wno-dev
-  for file in "${files[@]}"; do
-    left=$((tidy_seconds - (SECONDS - begun)))
-    ((left > 0)) || { echo "$file: not checked, $tidy_seconds s are over"; continue; }
-    tidy_file "$file" "$left"
-  done
+  export logs deadline=$((EPOCHSECONDS + tidy_seconds))
+  export -f tidy_file
+  # shellcheck disable=SC2016 # the inner shell expands it
+  printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$jobs" bash -c 'tidy_file "$1"' -
 }
 
-tidy_file() { # FILE SECONDS
-  local code=0
+tidy_file() { # runs in a shell of its own
+  local code=124 left=$((deadline - EPOCHSECONDS)) log=$logs/tidy-${1//\//_}
   grep -q "\"file\": \"$PWD/$1\"" build/tidy/compile_commands.json || { echo "$1: not built here"; return 0; }
-  timeout "$2" clang-tidy --quiet --extra-arg=-Wno-unknown-warning-option -p build/tidy "$1" \
-    >"$logs/tidy.log" 2>"$logs/tidy-errors.log" || code=$?
+  if ((left > 0)); then
+    code=0
+    timeout "$left" clang-tidy --quiet --extra-arg=-Wno-unknown-warning-option -p build/tidy "$1" \
+      >"$log" 2>"$log.errors" || code=$?
+  fi
   if ((code == 0)); then
     echo "$1: clean"
   elif ((code == 124)); then
     echo "$1: not checked, time is over"
-  elif grep -E ' error: ' "$logs/tidy.log" | grep -qv 'clang-diagnostic-error'; then
-    cat "$logs/tidy.log"
+  elif grep -E ' error: ' "$log" | grep -qv 'clang-diagnostic-error'; then
+    cat "$log"
     return 1
-  elif grep -q 'clang-diagnostic-error' "$logs/tidy.log"; then
+  elif grep -q 'clang-diagnostic-error' "$log"; then
     # An older clang does not compile all of C++20 that GCC does, and GCC has compiled this with warnings as errors.
     echo "$1: not checked, $(clang-tidy --version | grep -o 'version [0-9]*') cannot compile it"
   else
-    cat "$logs/tidy-errors.log"
+    cat "$log.errors"
     return 1
   fi
 }
