@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Pixels are a function of scene, camera, frame and settings: not of memory, threads, range or of what ran before."""
+
+import numpy as np
+import pytest
+
+
+def same(a, b) -> bool:
+    return np.array_equal(a.rgba.view(np.uint16), b.rgba.view(np.uint16))
+
+
+@pytest.mark.parametrize("strategy", ["bvh", "hybrid"])
+def test_memory_budget_does_not_show(sheaf, strategy):
+    """The least budget there is: tiles, and tiles cut again where their rays do not fit."""
+    small, usual = sheaf.all({"scene": "whitted", "options": ("--depth", 6, "--cutoff", 0, "--memory", mib), "stats": True,
+                              "size": "256x144", "strategy": strategy} for mib in (16, 1024))
+    assert same(small.frame(), usual.frame())
+    counts = [run.stats()["frames"][0] for run in (small, usual)]
+    assert counts[0]["rays"] == counts[1]["rays"]
+    assert counts[0]["hits"] == counts[1]["hits"]
+    assert counts[0]["peak_device_mib"] < 0.6 * counts[1]["peak_device_mib"]
+
+
+def test_frames_alone_and_in_a_range(sheaf):
+    runs = sheaf.all({"scene": "whitted", "options": ("--frames", frames), "strategy": "hybrid"}
+                     for frames in ("9-13", "11", "13,11,10", "9-13"))
+    one, *others = runs
+    assert sorted(one.files) == [9, 10, 11, 12, 13]
+    for run in others:
+        for number, path in run.files.items():
+            assert path.read_bytes() == one.files[number].read_bytes(), f"{number} of {sorted(run.files)}"
+    assert not same(one.frame(9), one.frame(10))
+
+
+def test_threads_do_not_show(sheaf):
+    files = [sheaf.render("whitted", "--frames", "5", strategy="hybrid", size="96x54", env={"LP_NUM_THREADS": threads})
+             .files[5].read_bytes() for threads in ("1", "2", "3")]
+    assert files[0] == files[1] == files[2]
+
+
+def test_counting_does_not_show(sheaf):
+    runs = sheaf.all({"scene": "cornell", "options": ("--count", way), "stats": True, "strategy": "hybrid"}
+                     for way in ("on", "off"))
+    assert same(runs[0].frame(), runs[1].frame())
+    counted, timed = (run.stats()["frames"][0] for run in runs)
+    assert counted["counted"]
+    assert not timed["counted"]
+    assert timed["tests"]["ray_triangle"] == {}
+
+
+def test_auto_says_why(sheaf):
+    run = sheaf.render("cornell", strategy="auto", stats=True)
+    stats = run.stats()
+    assert stats["strategy"] in ("hybrid", "bvh", "crsh", "rsh", "brute", "rayquery")
+    assert any(c.isdigit() for c in stats["chosen_because"])
+    assert same(run.frame(), sheaf.render("cornell").frame())
+
+
+def test_lossless_compressions_hold_the_same_pixels(sheaf):
+    ways = ("zip", "none", "rle", "zips", "piz")
+    runs = sheaf.all({"scene": "still_life", "options": ("--compression", way), "size": "33x17"} for way in ways)
+    for way, run in zip(ways, runs):
+        assert same(run.frame(), runs[0].frame())
+        assert run.frame().header["compression"].name == f"{way.replace('none', 'no').upper()}_COMPRESSION"
