@@ -71,7 +71,8 @@ using mat3 = glm::mat3;
 #define ROLE_BUNDLE_FLAGS 49
 #define ROLE_STATS 50
 #define ROLE_BOXES 51
-#define ROLE_COUNT 52
+#define ROLE_STRUCTURE 52  // the one role that is an acceleration structure
+#define ROLE_COUNT 53
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 

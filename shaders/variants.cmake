@@ -3,7 +3,7 @@
 foreach(stem animate_vertices animate_triangles objects_refit objects_spheres generate_primary generate_begin generate
              hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill rays_hierarchy
              rays_hierarchy_bundles traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
-             resolve layers)
+             resolve layers objects_boxes traverse_query)
   sheaf_shader(${stem} ${stem}.comp)
 endforeach()
 sheaf_shader(raster_vert raster.vert)

@@ -5,6 +5,7 @@
 
 #include "frame/auto_strategy.hpp"
 #include "frame/frame_attributes.hpp"
+#include "frame/reference_frames.hpp"
 
 namespace sheaf {
 namespace {
@@ -59,6 +60,13 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
   const RenderSettings& settings = options.settings;
   const Features features = find_features(scene, animations, settings, camera.moves());
   describe(scene, features, settings, stats);
+  if (settings.strategy == Strategy::reference) {
+    stats.device_name = "CPU, double precision";
+    stats.driver = "sheaf reference " SHEAF_VERSION;
+    stats.strategy = "reference";
+    stats.chosen_because = "asked for";
+    return make_reference_frames(scene, settings);
+  }
   auto device = std::make_unique<Device>(options.device);
   stats.device_name = device->summary().name;
   stats.driver = device->summary().driver;

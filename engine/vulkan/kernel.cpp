@@ -23,7 +23,10 @@ std::vector<std::uint32_t> declared_roles(std::span<const std::uint32_t> spirv) 
 PipelineLayout::PipelineLayout(const Device& device, std::vector<std::uint32_t> roles, vk::ShaderStageFlags stages)
     : roles_(std::move(roles)) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
-  for (const auto role : roles_) bindings.emplace_back(role, vk::DescriptorType::eStorageBuffer, 1, stages);
+  for (const auto role : roles_)
+    bindings.emplace_back(
+        role, role == ROLE_STRUCTURE ? vk::DescriptorType::eAccelerationStructureKHR : vk::DescriptorType::eStorageBuffer, 1,
+        stages);
   set_ = vk::raii::DescriptorSetLayout(
       device.logical(), {vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, bindings});
   const vk::PushConstantRange range(stages, 0, push_bytes);

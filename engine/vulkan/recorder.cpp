@@ -51,7 +51,13 @@ void Recorder::bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint po
   std::array<vk::DescriptorBufferInfo, ROLE_COUNT> infos;
   std::vector<vk::WriteDescriptorSet> writes;
   writes.reserve(layout.roles().size());
+  const vk::WriteDescriptorSetAccelerationStructureKHR structure(1, &structure_);
   for (const auto role : layout.roles()) {
+    if (role == ROLE_STRUCTURE) {
+      writes.emplace_back(vk::DescriptorSet{}, role, 0, 1, vk::DescriptorType::eAccelerationStructureKHR);
+      writes.back().pNext = &structure;
+      continue;
+    }
     infos[role] = vk::DescriptorBufferInfo(bound_[role], 0, VK_WHOLE_SIZE);
     writes.emplace_back(vk::DescriptorSet{}, role, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr, &infos[role]);
   }

@@ -22,6 +22,8 @@ class Recorder {
   void bind(std::uint32_t role, const Buffer& buffer) { bound_[role] = buffer.handle(); }
   void bind(std::uint32_t role, vk::Buffer buffer) { bound_[role] = buffer; }
 
+  void bind_structure(vk::AccelerationStructureKHR structure) { structure_ = structure; }
+
   /// Device time from here on counts for this stage.
   void stage(const char* name);
 
@@ -73,6 +75,7 @@ class Recorder {
   vk::raii::QueryPool queries_{nullptr};
   Buffer unbound_;  // stands in for roles that a kernel declares but its variant never reads
   std::array<vk::Buffer, ROLE_COUNT> bound_{};
+  vk::AccelerationStructureKHR structure_;
   std::vector<const char*> marks_;
   const char* current_ = nullptr;
   std::map<std::string, double> times_;
