@@ -31,14 +31,18 @@ Json describe(const Scene& scene) {
       instances += copies;
     }
     if (node.camera != none)
-      cameras.push_back(named(node.name, {{"node", index}, {"kind", scene.cameras[node.camera].orthographic ? "orthographic" : "perspective"}}));
+      cameras.push_back(
+          named(node.name,
+                {{"node", index}, {"kind", scene.cameras[node.camera].orthographic ? "orthographic" : "perspective"}}));
     if (node.light != none) {
       constexpr const char* kinds[] = {"directional", "point", "spot"};
-      lights.push_back(named(node.name, {{"node", index}, {"kind", kinds[static_cast<int>(scene.lights[node.light].kind)]}}));
+      lights.push_back(
+          named(node.name, {{"node", index}, {"kind", kinds[static_cast<int>(scene.lights[node.light].kind)]}}));
     }
   }
   for (const auto& animation : scene.animations)
-    animations.push_back(named(animation.name, {{"seconds", animation.duration}, {"channels", animation.channels.size()}}));
+    animations.push_back(
+        named(animation.name, {{"seconds", animation.duration}, {"channels", animation.channels.size()}}));
   return {{"scene", scene.path},
           {"sha256", scene.sha256},
           {"triangles", total},
@@ -66,7 +70,8 @@ void print_list(const char* title, const Json& list) {
     }
     std::string line;
     for (const auto& [key, value] : item.items())
-      line += (line.empty() ? "" : ", ") + (key == "name" ? "" : key + " ") + (value.is_string() ? value.get<std::string>() : value.dump());
+      line += (line.empty() ? "" : ", ") + (key == "name" ? "" : key + " ") +
+              (value.is_string() ? value.get<std::string>() : value.dump());
     std::printf("  %s\n", line.c_str());
   }
 }
@@ -90,7 +95,8 @@ int run_inspect(const std::string& path, const std::string& scene_name, bool jso
     return 0;
   }
   std::printf("%s\n", path.c_str());
-  for (const char* key : {"triangles", "unique_triangles", "instances", "meshes", "materials", "images", "nodes", "skins"})
+  for (const char* key :
+       {"triangles", "unique_triangles", "instances", "meshes", "materials", "images", "nodes", "skins"})
     std::printf("  %-17s %s\n", key, all[key].dump().c_str());
   std::printf("looks through\n  %s\n", camera.description().c_str());
   print_list("cameras", all["cameras"]);

@@ -22,7 +22,8 @@ int report(sheaf::Progress* progress, int code, const std::string& text) {
 }
 
 int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
-  CLI::App app{"Sheaf renders animated glTF scenes by Whitted ray tracing over a coherent ray-space hierarchy", "sheaf"};
+  CLI::App app{"Sheaf renders animated glTF scenes by Whitted ray tracing over a coherent ray-space hierarchy",
+               "sheaf"};
   app.set_version_flag("--version", std::string("sheaf ") + SHEAF_VERSION);
   app.require_subcommand(1);
   sheaf::RenderOptions options;
@@ -40,7 +41,8 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return report(nullptr, static_cast<int>(sheaf::ErrorKind::usage), std::string(error.what()) + " (see sheaf --help)");
+    return report(nullptr, static_cast<int>(sheaf::ErrorKind::usage),
+                  std::string(error.what()) + " (see sheaf --help)");
   }
   if (devices->parsed()) return sheaf::run_devices(devices_json);
   if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, inspect_json);

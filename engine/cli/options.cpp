@@ -66,18 +66,22 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--spp", o.settings.samples, "samples a pixel")->capture_default_str();
   command.add_option("--depth", o.settings.depth, "generations of reflection and refraction")->capture_default_str();
   command.add_option("--cutoff", o.settings.cutoff, "least weight of a ray worth following")->capture_default_str();
-  command.add_option("--strategy", o.strategy, "auto, hybrid, crsh, rsh, bvh, brute, rayquery, reference")->capture_default_str();
+  command.add_option("--strategy", o.strategy, "auto, hybrid, crsh, rsh, bvh, brute, rayquery, reference")
+      ->capture_default_str();
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
   command.add_option("--primary", o.primary, "raster or trace")->capture_default_str();
   command.add_option("--aov", o.layers, "layers: Z,N,P,albedo,UV,id,tests or all");
   command.add_option("--compression", o.compression, "none, rle, zips, zip, piz, dwaa")->capture_default_str();
   command.add_option("--name", o.name, "file names; default <scene>.####.exr");
-  command.add_option("--environment", o.environment, "R,G,B radiance of what rays that miss see; default 0, or 0.4 in a scene without lights");
+  command.add_option("--environment", o.environment,
+                     "R,G,B radiance of what rays that miss see; default 0, or 0.4 in a scene without lights");
   command.add_option("--stats", o.stats, "times and counts, JSON");
-  command.add_option("--count", o.count, "auto, on or off: count tests (auto: where --stats or the tests layer ask)")->capture_default_str();
+  command.add_option("--count", o.count, "auto, on or off: count tests (auto: where --stats or the tests layer ask)")
+      ->capture_default_str();
   command.add_option("--dump", o.dump, "folder for every ray and hit, .npy");
   command.add_option("--device", o.device, "index or part of a name");
-  command.add_option("--memory", o.settings.memory_mib, "MiB for rays, and what else scales with the picture")->capture_default_str();
+  command.add_option("--memory", o.settings.memory_mib, "MiB for rays, and what else scales with the picture")
+      ->capture_default_str();
   command.add_option("--progress", o.progress, "auto, bar, json or none")->capture_default_str();
   command.add_flag("--resume", o.resume, "leave frames that are already whole alone");
   command.add_flag("--opaque", o.settings.opaque, "every surface opaque and two-sided");
@@ -88,13 +92,16 @@ void resolve_options(RenderOptions& o) {
   RenderSettings& s = o.settings;
   parse_size(o.size, s);
   s.strategy = parse_strategy(o.strategy);
-  s.sort = one_of<SortPolicy>("sort", o.sort, {{"auto", SortPolicy::automatic}, {"on", SortPolicy::on}, {"off", SortPolicy::off}});
-  s.primary = one_of<PrimaryMethod>("primary", o.primary, {{"raster", PrimaryMethod::raster}, {"trace", PrimaryMethod::trace}});
+  s.sort = one_of<SortPolicy>("sort", o.sort,
+                              {{"auto", SortPolicy::automatic}, {"on", SortPolicy::on}, {"off", SortPolicy::off}});
+  s.primary =
+      one_of<PrimaryMethod>("primary", o.primary, {{"raster", PrimaryMethod::raster}, {"trace", PrimaryMethod::trace}});
   s.layers = parse_layers(o.layers);
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));
   if (!o.environment.empty()) s.environment = parse_color("environment", o.environment);
-  if (o.fps && !(*o.fps > 0 && *o.fps <= 1e6)) throw Error(ErrorKind::input, "--fps: must be above 0 and at most 1000000");
+  if (o.fps && !(*o.fps > 0 && *o.fps <= 1e6))
+    throw Error(ErrorKind::input, "--fps: must be above 0 and at most 1000000");
   if (!o.camera.empty() && !o.camera_node.empty())
     throw Error(ErrorKind::usage, "--camera and --camera-node: only one of them can choose the camera");
   std::vector<std::string> layers;

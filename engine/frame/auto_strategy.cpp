@@ -9,7 +9,8 @@
 namespace sheaf {
 namespace {
 
-// Device time of the stages that differ between strategies, on the second of two probes: the first compiles and uploads.
+// Device time of the stages that differ between strategies, on the second of two probes: the first compiles and
+// uploads.
 double probe(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
              Strategy strategy, const FrameRequest& first) {
   Renderer renderer(device, scene, features, settings, strategy);
@@ -22,8 +23,8 @@ double probe(const Device& device, const Scene& scene, const Features& features,
 
 }  // namespace
 
-Choice choose_strategy(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
-                       const FrameRequest& first) {
+Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
+                       const RenderSettings& settings, const FrameRequest& first) {
   constexpr double probe_pixels = 48 * 1024;  // enough bundles to tell, few enough to cost little
   RenderSettings small = settings;
   const double scale = std::min(1.0, std::sqrt(probe_pixels / (static_cast<double>(settings.width) * settings.height)));
@@ -45,7 +46,8 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
       choice.strategy = candidate;
     }
   }
-  choice.because = "fastest of a probe of " + std::to_string(small.width) + "x" + std::to_string(small.height) + " pixels: " + measured;
+  choice.because = "fastest of a probe of " + std::to_string(small.width) + "x" + std::to_string(small.height) +
+                   " pixels: " + measured;
   return choice;
 }
 

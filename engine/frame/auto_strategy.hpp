@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `--strategy auto`: the fastest for this scene and device, found by rendering the first frame small with each candidate.
+// `--strategy auto`: the fastest for this scene and device, found by rendering the first frame small with each
+// candidate.
 #pragma once
 
 #include <string>

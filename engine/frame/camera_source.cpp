@@ -27,8 +27,8 @@ std::uint32_t find_camera_node(const Scene& scene, const std::string& selector) 
 
 }  // namespace
 
-CameraSource::CameraSource(const Scene& scene, const std::vector<std::uint32_t>& animations, const std::string& path_file,
-                           const std::string& node_selector, double aspect)
+CameraSource::CameraSource(const Scene& scene, const std::vector<std::uint32_t>& animations,
+                           const std::string& path_file, const std::string& node_selector, double aspect)
     : scene_(scene), aspect_(aspect) {
   if (!path_file.empty()) {
     path_ = load_camera_path(path_file);

@@ -13,8 +13,8 @@ namespace sheaf {
 
 class CameraSource {
  public:
-  /// `path_file`, else `node_selector` (camera's or its node's name, or an index among the scene's cameras), else the scene's
-  /// first camera, else the scene framed whole. Throws Error{input}.
+  /// `path_file`, else `node_selector` (camera's or its node's name, or an index among the scene's cameras), else the
+  /// scene's first camera, else the scene framed whole. Throws Error{input}.
   CameraSource(const Scene& scene, const std::vector<std::uint32_t>& animations, const std::string& path_file,
                const std::string& node_selector, double aspect);
 

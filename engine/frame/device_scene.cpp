@@ -31,7 +31,8 @@ glm::dmat3 cofactors(const glm::dmat4& m) {
 Box transformed(const Box& box, const glm::dmat4& m) {
   Box result;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z, 1);
+    const glm::dvec4 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                       corner & 4 ? box.hi.z : box.lo.z, 1);
     const glm::vec3 q(glm::dvec3(m * p));
     result.lo = glm::min(result.lo, q);
     result.hi = glm::max(result.hi, q);
@@ -130,7 +131,8 @@ void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
     const InstanceSource& source = layout_.sources[i];
     gpu::Instance instance = layout_.instances[i];
     instance.determinant_sign = 1;
-    const bool skinned = source.deforms && scene_.nodes[source.node].skin != none && !scene_.meshes[source.mesh].joints.empty();
+    const bool skinned =
+        source.deforms && scene_.nodes[source.node].skin != none && !scene_.meshes[source.mesh].joints.empty();
     if (!skinned) {
       const glm::dmat4 m = translation(-origin_) * pose.world[source.node] * source.within_node;
       instance.row0 = row(m, 0);
@@ -158,7 +160,8 @@ void DeviceScene::place_skins(const Pose& pose, std::vector<bool>& moved) {
     const InstanceSource& source = layout_.sources[d.instance];
     const auto& targets = pose.morph_weights[source.node];
     for (std::uint32_t k = 0; k < d.morph_targets; ++k)
-      if (store(weights[d.weight_first + k], static_cast<float>(k < targets.size() ? targets[k] : 0.0))) moved[d.instance] = true;
+      if (store(weights[d.weight_first + k], static_cast<float>(k < targets.size() ? targets[k] : 0.0)))
+        moved[d.instance] = true;
     if (d.joint_words == none) continue;
     const Skin& skin = scene_.skins[scene_.nodes[source.node].skin];
     Box box;
@@ -167,7 +170,8 @@ void DeviceScene::place_skins(const Pose& pose, std::vector<bool>& moved) {
                            translation(scene_.meshes[source.mesh].centre);
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 4; ++c)
-          if (store(matrices[(d.first_matrix + j) * 12 + r * 4 + c], static_cast<float>(m[c][r]))) moved[d.instance] = true;
+          if (store(matrices[(d.first_matrix + j) * 12 + r * 4 + c], static_cast<float>(m[c][r])))
+            moved[d.instance] = true;
       merge(box, transformed(layout_.mesh_boxes[source.mesh], m));
     }
     boxes_[d.instance] = box;
@@ -258,7 +262,8 @@ Motion DeviceScene::list_work(const std::vector<bool>& moved, Recorder& recorder
   const auto vertices = vertex_work_.view<glm::uvec2>();
   for (std::uint32_t d = 0; d < layout_.deforms.size(); ++d)
     if (moved[layout_.deforms[d].instance])
-      for (std::uint32_t v = 0; v < layout_.deforms[d].vertex_count; v += gpu::GROUP) vertices[motion.vertex_blocks++] = {d, v};
+      for (std::uint32_t v = 0; v < layout_.deforms[d].vertex_count; v += gpu::GROUP)
+        vertices[motion.vertex_blocks++] = {d, v};
   if (!plan_.object_hierarchy) return motion;
   std::vector<std::vector<std::uint32_t>> heights(layout_.refit_by_height.size());
   for (std::size_t h = 0; h < layout_.refit_by_height.size(); ++h)
@@ -277,8 +282,8 @@ Motion DeviceScene::list_work(const std::vector<bool>& moved, Recorder& recorder
 }
 
 Motion DeviceScene::update(const Pose& pose, const CameraView& camera, Recorder& recorder) {
-  // The origin: a point of a grid about as fine as the scene is large, next to the camera. A function of scene, camera and
-  // frame only; it stays put while the camera moves about inside the scene.
+  // The origin: a point of a grid about as fine as the scene is large, next to the camera. A function of scene, camera
+  // and frame only; it stays put while the camera moves about inside the scene.
   const glm::dvec3 eye(camera.to_world[3]);
   glm::dvec3 lo(std::numeric_limits<double>::max()), hi(-std::numeric_limits<double>::max());
   for (const auto& source : layout_.sources) {

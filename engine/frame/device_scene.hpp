@@ -17,12 +17,14 @@ struct Motion {  // what a frame's animate and objects stages have to do; all ze
   std::uint32_t moved_instances = 0;
   std::uint32_t triangle_blocks = 0;  // in ROLE_WORK of animate_triangles
   std::uint32_t vertex_blocks = 0;    // in ROLE_WORK of animate_vertices
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> refit;  // (first, count) in the refit list, a height each, leaves first
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      refit;  // (first, count) in the refit list, a height each, leaves first
 };
 
 class DeviceScene {
  public:
-  DeviceScene(const Device& device, Recorder& recorder, const Scene& scene, const RenderSettings& settings, const Plan& plan);
+  DeviceScene(const Device& device, Recorder& recorder, const Scene& scene, const RenderSettings& settings,
+              const Plan& plan);
 
   /// Moves everything to a pose. `origin` is the frame origin; triangles are relative to it.
   [[nodiscard]] Motion update(const Pose& pose, const CameraView& camera, Recorder& recorder);
@@ -60,7 +62,7 @@ class DeviceScene {
   std::vector<glm::vec3> light_positions_;
   glm::dvec3 origin_{0};
   float box_pad_ = 0;
-  double grid_ = 1;         // the origin snaps to it, so that a moving camera does not move the whole scene
+  double grid_ = 1;  // the origin snaps to it, so that a moving camera does not move the whole scene
   std::uint32_t light_count_ = 0;
   bool fresh_ = true;
 };

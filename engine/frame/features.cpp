@@ -26,7 +26,8 @@ void add_material(const Scene& scene, const Material& material, const RenderSett
   features.volumes |= lit && material.transmission > 0 && material.thickness > 0 && !settings.opaque;
   features.blended |= material.alpha_mode == AlphaMode::blend && !settings.opaque;
   features.masked |= material.alpha_mode == AlphaMode::mask && !settings.opaque;
-  features.reflective |= lit && (least_roughness(scene, material) < 0.4F || (material.transmission > 0 && !settings.opaque));
+  features.reflective |=
+      lit && (least_roughness(scene, material) < 0.4F || (material.transmission > 0 && !settings.opaque));
   features.emissive |= material.emissive != glm::vec3(0);
   features.normal_mapped |= material.normal_texture.present();
   for (const auto* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
@@ -109,13 +110,15 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!features.masked) leave("alpha test", "no alpha-masked material");
   const bool traced = strategy != Strategy::brute && strategy != Strategy::rayquery && strategy != Strategy::reference;
   plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid;
-  if (!plan.object_hierarchy) leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
+  if (!plan.object_hierarchy)
+    leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
   plan.ray_hierarchy = strategy == Strategy::hybrid || strategy == Strategy::rsh || strategy == Strategy::crsh;
   if (!plan.ray_hierarchy) leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
   plan.sorts = (strategy == Strategy::hybrid || strategy == Strategy::crsh) && settings.sort != SortPolicy::off;
   if (!plan.sorts)
-    leave("sort", settings.sort == SortPolicy::off && traced ? "--sort off"
-                                                             : std::string("strategy ") + name_of(strategy) + " does not sort");
+    leave("sort", settings.sort == SortPolicy::off && traced
+                      ? "--sort off"
+                      : std::string("strategy ") + name_of(strategy) + " does not sort");
   plan.spheres = strategy == Strategy::rsh || strategy == Strategy::crsh;
   return plan;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a scene needs of the engine, found once at load, and the plan that follows: which stages, shader variants and buffers
-// there will be, and for each that is left out, why. A stage left out has no pipeline, no memory and no dispatch.
+// What a scene needs of the engine, found once at load, and the plan that follows: which stages, shader variants and
+// buffers there will be, and for each that is left out, why. A stage left out has no pipeline, no memory and no
+// dispatch.
 #pragma once
 
 #include <cstdint>

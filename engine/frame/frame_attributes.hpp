@@ -12,7 +12,8 @@ namespace sheaf {
 
 [[nodiscard]] nlohmann::ordered_json settings_json(const RenderSettings& settings);
 
-[[nodiscard]] FrameAttributes frame_attributes(const Scene& scene, const RenderSettings& settings, const CameraView& camera,
-                                               std::int64_t frame, double time_s, double fps, const std::string& strategy);
+[[nodiscard]] FrameAttributes frame_attributes(const Scene& scene, const RenderSettings& settings,
+                                               const CameraView& camera, std::int64_t frame, double time_s, double fps,
+                                               const std::string& strategy);
 
 }  // namespace sheaf

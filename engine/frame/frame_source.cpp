@@ -12,9 +12,10 @@ namespace {
 
 class DeviceFrames final : public FrameSource {
  public:
-  DeviceFrames(std::unique_ptr<Device> device, const Scene& scene, const Features& features, const RenderSettings& settings,
-               Strategy strategy)
-      : device_(std::move(device)), still_(!features.geometry_moves() && !features.moving_camera && !features.moving_lights),
+  DeviceFrames(std::unique_ptr<Device> device, const Scene& scene, const Features& features,
+               const RenderSettings& settings, Strategy strategy)
+      : device_(std::move(device)),
+        still_(!features.geometry_moves() && !features.moving_camera && !features.moving_lights),
         renderer_(*device_, scene, features, settings, strategy) {}
 
   RenderedFrame render(const FrameRequest& request) override {

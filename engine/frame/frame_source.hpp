@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where frames come from: the device's renderer, or the double-precision reference; and frames that repeat are rendered once.
+// Where frames come from: the device's renderer, or the double-precision reference; and frames that repeat are rendered
+// once.
 #pragma once
 
 #include <memory>
@@ -17,8 +18,10 @@ class FrameSource {
   virtual void set_dump(DumpWriter*) {}
 };
 
-/// Opens the device (unless the strategy is `reference`), settles `auto`, and fills in what the stats say of scene and device.
-[[nodiscard]] std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::vector<std::uint32_t>& animations,
+/// Opens the device (unless the strategy is `reference`), settles `auto`, and fills in what the stats say of scene and
+/// device.
+[[nodiscard]] std::unique_ptr<FrameSource> make_frame_source(const Scene& scene,
+                                                             const std::vector<std::uint32_t>& animations,
                                                              const CameraSource& camera, const RenderOptions& options,
                                                              double fps, std::int64_t first_frame, RunStats& stats);
 

@@ -6,7 +6,8 @@
 
 namespace sheaf {
 
-ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory) : scene_(scene), memory_(memory) {
+ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
+    : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
   corners_ = Buffer(device, "dump", std::uint64_t{scene.triangles()} * 12, Kind::readback);
   rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_WORDS * 4, Kind::readback);
@@ -49,8 +50,8 @@ HitRecord ListDump::record_of(const float* ray, std::uint32_t triangle, float t)
   return record;
 }
 
-void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list, std::uint32_t kind, std::uint32_t generation,
-                    std::uint32_t slots) {
+void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list, std::uint32_t kind,
+                    std::uint32_t generation, std::uint32_t slots) {
   recorder.copy(list.rays, rays_, list.rays.bytes());
   recorder.copy(list.hits, hits_, list.hits.bytes());
   recorder.copy(list.order, order_, list.order.bytes());
@@ -64,8 +65,9 @@ void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list,
   std::vector<HitRecord> hits;
   rays.reserve(count * 8);
   hits.reserve(count);
-  constexpr std::uint32_t fields[8] = {gpu::RAY_ORIGIN,    gpu::RAY_ORIGIN + 1,    gpu::RAY_ORIGIN + 2,    gpu::RAY_TMIN,
-                                       gpu::RAY_DIRECTION, gpu::RAY_DIRECTION + 1, gpu::RAY_DIRECTION + 2, gpu::RAY_TMAX};
+  constexpr std::uint32_t fields[8] = {gpu::RAY_ORIGIN,        gpu::RAY_ORIGIN + 1, gpu::RAY_ORIGIN + 2,
+                                       gpu::RAY_TMIN,          gpu::RAY_DIRECTION,  gpu::RAY_DIRECTION + 1,
+                                       gpu::RAY_DIRECTION + 2, gpu::RAY_TMAX};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t slot = slots != 0 ? i : order[i];
     for (const auto field : fields) rays.push_back(words[std::size_t{field} * memory_.capacity + slot]);

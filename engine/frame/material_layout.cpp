@@ -21,7 +21,8 @@ gpu::TextureUse lay_out_use(const TextureUse& use) {
 // Stops (powers of two) of absorption a metre: color^(t/distance) = 2^(−stops·t).
 glm::vec3 absorption(const Material& material) {
   glm::vec3 stops(0);
-  if (!(material.attenuation_distance < std::numeric_limits<float>::infinity()) || material.attenuation_distance <= 0) return stops;
+  if (!(material.attenuation_distance < std::numeric_limits<float>::infinity()) || material.attenuation_distance <= 0)
+    return stops;
   for (int c = 0; c < 3; ++c)
     stops[c] = -std::log2(std::clamp(material.attenuation_color[c], 1e-9F, 1.0F)) / material.attenuation_distance;
   return stops;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t list_bytes = gpu::RAY_WORDS * 4 + 8 + 4;  // a slot: ray, hit, place in the order
 constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;            // accumulation, visibility, output and its read-back
-constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;      // keys, kept order, chunks twice, skeleton, digit counts
+constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;  // keys, kept order, chunks twice, skeleton, digit counts
 constexpr std::uint32_t least_capacity = 1024;
 
 std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
@@ -46,8 +46,8 @@ void make_sort_memory(const Device& device, RayMemory& m) {
 
 }  // namespace
 
-RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, const Plan& plan, const Features& features,
-                          std::uint32_t lights) {
+RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, const Plan& plan,
+                          const Features& features, std::uint32_t lights) {
   RayMemory m;
   const std::uint64_t budget = settings.memory_mib << 20U;
   const std::uint64_t spare = plan.refractions && plan.reflections ? 2 : 1;  // a hit there makes up to two rays

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The memory that scales with the picture: lists of rays, and what sorting and accumulation need. All of it is sized once from the
-// budget (`--memory`); a tile whose rays do not fit is cut in two, so no ray is ever dropped.
+// The memory that scales with the picture: lists of rays, and what sorting and accumulation need. All of it is sized
+// once from the budget (`--memory`); a tile whose rays do not fit is cut in two, so no ray is ever dropped.
 #pragma once
 
 #include <array>

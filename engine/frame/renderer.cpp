@@ -111,7 +111,8 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
 
   const auto times = recorder_.take_times();
   for (const char* name : stage_names)
-    if (const auto found = times.find(name); found != times.end()) out.stats.stages_ms.emplace_back(name, found->second);
+    if (const auto found = times.find(name); found != times.end())
+      out.stats.stages_ms.emplace_back(name, found->second);
   out.stats.peak_device_mib = static_cast<double>(device_.peak_bytes()) / (1 << 20);
   std::uint64_t rays = 0;
   for (const auto count : out.stats.rays) rays += count;
@@ -123,8 +124,9 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
 void Renderer::render_tiles(const FrameRequest& request, const Tile& tile, RenderedFrame& out) {
   if (tile.pixels() <= memory_.tile_pixels && render_tile(request, tile, out)) return;
   if (tile.pixels() == 1)
-    throw limit_error("pixel (" + std::to_string(tile.x) + ", " + std::to_string(tile.y) + ")",
-                      "its rays exceed --memory " + std::to_string(settings_.memory_mib) + "; lower --depth or raise --cutoff");
+    throw limit_error(
+        "pixel (" + std::to_string(tile.x) + ", " + std::to_string(tile.y) + ")",
+        "its rays exceed --memory " + std::to_string(settings_.memory_mib) + "; lower --depth or raise --cutoff");
   Tile first = tile, second = tile;
   if (tile.height > 1) {  // whole rows while there are several: they keep the raster pass simple
     const std::uint32_t rows = std::clamp(memory_.tile_pixels / tile.width, 1U, (tile.height + 1) / 2);
@@ -154,7 +156,8 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   }
   resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples);
   recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
-  if (memory_.pixel_tests) recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
+  if (memory_.pixel_tests)
+    recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
   recorder_.copy(memory_.records, memory_.records_readback, records_.size() * gpu::COUNT_WORDS * 4);
   recorder_.submit_and_wait();
   store_tile(tile, out);
@@ -217,9 +220,10 @@ void Renderer::collect_generations(RenderedFrame& out) {
     const auto* counters = &words[r * gpu::COUNT_WORDS];
     const auto [generation, kind] = records_[r];
     if (counters[gpu::COUNT_RAYS + kind] == 0) continue;
-    auto found = std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
-      return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
-    });
+    auto found =
+        std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
+          return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
+        });
     if (found == out.stats.generations.end()) {
       out.stats.generations.push_back({});
       found = std::prev(out.stats.generations.end());
@@ -236,7 +240,8 @@ void Renderer::collect_generations(RenderedFrame& out) {
     found->tight += counters[gpu::COUNT_TIGHT];
     if (counters[gpu::COUNT_SORT] != 0) {
       found->sorted = true;
-      found->sort_reason = settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
+      found->sort_reason =
+          settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
     }
   }
 }
@@ -256,7 +261,8 @@ void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
   if (!out.layers.tests.empty()) {
     const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
     for (std::uint32_t i = 0; i < tile.pixels(); ++i)
-      out.layers.tests[std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width] = static_cast<float>(tests[i]);
+      out.layers.tests[std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width] =
+          static_cast<float>(tests[i]);
   }
   collect_stats(out);
   collect_generations(out);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The frame driver. Reads like the algorithm: animate, objects, then tile by tile raster, generate, trace, shade, resolve.
+// The frame driver. Reads like the algorithm: animate, objects, then tile by tile raster, generate, trace, shade,
+// resolve.
 #pragma once
 
 #include <cstdint>

@@ -14,8 +14,8 @@ struct WorldBox {
   [[nodiscard]] bool empty() const { return lo.x > hi.x; }
 };
 
-/// Holds everything the animations show, sampled at 17 evenly spaced moments: a function of scene and animations, not of the
-/// frames asked for. Skins are bounded joint by joint, morphs by their largest deltas.
+/// Holds everything the animations show, sampled at 17 evenly spaced moments: a function of scene and animations, not
+/// of the frames asked for. Skins are bounded joint by joint, morphs by their largest deltas.
 [[nodiscard]] WorldBox animated_bounds(const Scene& scene, const std::vector<std::uint32_t>& animations);
 
 }  // namespace sheaf

@@ -56,7 +56,8 @@ std::uint32_t append_joints(SceneLayout& layout, const Mesh& mesh) {
 
 // Deltas of all targets, one block after the other; an attribute that some target lacks is filled with zeros.
 std::uint32_t append_targets(SceneLayout& layout, const Mesh& mesh, std::vector<glm::vec3> MorphTarget::*attribute) {
-  const bool any = std::any_of(mesh.targets.begin(), mesh.targets.end(), [&](const auto& t) { return !(t.*attribute).empty(); });
+  const bool any =
+      std::any_of(mesh.targets.begin(), mesh.targets.end(), [&](const auto& t) { return !(t.*attribute).empty(); });
   if (!any) return none;
   const auto first = static_cast<std::uint32_t>(layout.morphs.size());
   for (const auto& target : mesh.targets) {
@@ -117,7 +118,8 @@ void place_deforming(SceneLayout& layout, const Scene& scene, const InstanceSour
 }
 
 // The mesh's tree once more, for one instance: references moved to its nodes and triangles.
-void place_hierarchy(SceneLayout& layout, const ObjectHierarchy& tree, InstanceSource& source, std::uint32_t first_triangle) {
+void place_hierarchy(SceneLayout& layout, const ObjectHierarchy& tree, InstanceSource& source,
+                     std::uint32_t first_triangle) {
   const auto base = static_cast<std::uint32_t>(layout.node_children.size() / wide);
   source.root = base;
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {

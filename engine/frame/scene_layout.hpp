@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How a scene lies in the device's buffers: instances in a fixed order, their triangles one after the other (the triangle
-// ids of ties, dumps and the visibility buffer), vertices once a mesh, one object hierarchy a mesh copied for each instance, the
-// top level in front of them.
+// How a scene lies in the device's buffers: instances in a fixed order, their triangles one after the other (the
+// triangle ids of ties, dumps and the visibility buffer), vertices once a mesh, one object hierarchy a mesh copied for
+// each instance, the top level in front of them.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ namespace sheaf {
 
 struct InstanceSource {
   std::uint32_t node = 0, mesh = 0;
-  glm::dmat4 within_node{1};    // EXT_mesh_gpu_instancing, and the mesh's centre
-  bool deforms = false;         // skinned or morphed: its vertices are made on the device
-  std::uint32_t root = 0;       // its node in the object hierarchy
+  glm::dmat4 within_node{1};  // EXT_mesh_gpu_instancing, and the mesh's centre
+  bool deforms = false;       // skinned or morphed: its vertices are made on the device
+  std::uint32_t root = 0;     // its node in the object hierarchy
 };
 
 struct SceneLayout {
@@ -32,16 +32,16 @@ struct SceneLayout {
   std::vector<gpu::Material> materials;
   std::vector<gpu::Texture> textures;
   std::vector<std::uint32_t> texels;
-  std::vector<gpu::Deform> deforms;      // of the deforming instances, in their order
-  std::vector<std::uint32_t> joints;     // 12 words a skinned vertex: 4 of joint pairs, 8 of weights
+  std::vector<gpu::Deform> deforms;   // of the deforming instances, in their order
+  std::vector<std::uint32_t> joints;  // 12 words a skinned vertex: 4 of joint pairs, 8 of weights
   std::vector<glm::vec3> morphs;
   std::uint32_t dynamic_vertices = 0, skin_matrices = 0, morph_weights = 0;
   std::uint64_t triangles = 0;
-  std::vector<std::uint32_t> node_children;               // WIDE words a node; the first `top_nodes` are the top level's
+  std::vector<std::uint32_t> node_children;  // WIDE words a node; the first `top_nodes` are the top level's
   std::vector<std::vector<std::uint32_t>> refit_by_height;  // of all instances' nodes
-  std::vector<std::uint32_t> node_instance;               // a node (past the top level): its instance
+  std::vector<std::uint32_t> node_instance;                 // a node (past the top level): its instance
   std::uint32_t top_nodes = 1;
-  std::vector<Box> mesh_boxes;                            // a mesh: object space, rest pose
+  std::vector<Box> mesh_boxes;  // a mesh: object space, rest pose
 };
 
 /// Throws Error{limit} where the scene does not fit the device's buffers.

@@ -12,13 +12,13 @@ namespace sheaf {
 namespace {
 
 constexpr std::array<std::pair<Strategy, const char*>, 8> strategies{{{Strategy::automatic, "auto"},
-                                                                     {Strategy::hybrid, "hybrid"},
-                                                                     {Strategy::crsh, "crsh"},
-                                                                     {Strategy::rsh, "rsh"},
-                                                                     {Strategy::bvh, "bvh"},
-                                                                     {Strategy::brute, "brute"},
-                                                                     {Strategy::rayquery, "rayquery"},
-                                                                     {Strategy::reference, "reference"}}};
+                                                                      {Strategy::hybrid, "hybrid"},
+                                                                      {Strategy::crsh, "crsh"},
+                                                                      {Strategy::rsh, "rsh"},
+                                                                      {Strategy::bvh, "bvh"},
+                                                                      {Strategy::brute, "brute"},
+                                                                      {Strategy::rayquery, "rayquery"},
+                                                                      {Strategy::reference, "reference"}}};
 
 template <typename T>
 void check_range(const char* name, T value, T low, T high) {

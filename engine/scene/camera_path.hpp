@@ -14,7 +14,7 @@ namespace sheaf {
 
 /// A camera at one moment. Looks along -Z of `to_world`, +Y up; right-handed.
 struct CameraView {
-  glm::dmat4 to_world{1};   // rigid: rotation and translation only
+  glm::dmat4 to_world{1};  // rigid: rotation and translation only
   bool orthographic = false;
   double tan_half_y = 0.41421356237309503;  // perspective: tangent of half the vertical field of view
   double half_height = 1;                   // orthographic
@@ -41,19 +41,20 @@ struct CameraPath {
   std::vector<CameraKey> keys;  // strictly increasing times, at least one
 };
 
-/// Throws Error{input} with the file, the JSON place ("keys[2].rotation") and the reason. Unknown keys are refused by name.
+/// Throws Error{input} with the file, the JSON place ("keys[2].rotation") and the reason. Unknown keys are refused by
+/// name.
 [[nodiscard]] CameraPath load_camera_path(const std::string& path);
 [[nodiscard]] CameraPath parse_camera_path(const std::string& json_text, const std::string& name_for_errors);
 
 /// `aspect` is width / height of the image (needed where fov_axis is horizontal).
 [[nodiscard]] CameraView evaluate_camera_path(const CameraPath& path, double time_s, double aspect);
 
-/// A scene camera under its node's world matrix. Scale in the node is dropped (rigid part by polar-like orthonormalisation).
-/// The vertical field of view is kept whatever the image's aspect.
+/// A scene camera under its node's world matrix. Scale in the node is dropped (rigid part by polar-like
+/// orthonormalisation). The vertical field of view is kept whatever the image's aspect.
 [[nodiscard]] CameraView view_of(const Camera& camera, const glm::dmat4& node_to_world, double aspect);
 
-/// Frames the whole box [lo, hi]: 45° vertical field of view, seen from +Z a little from above and the right, so that the
-/// bounding sphere fits both axes with a 5 % margin. An empty or point-sized box is framed as if 1 m wide.
+/// Frames the whole box [lo, hi]: 45° vertical field of view, seen from +Z a little from above and the right, so that
+/// the bounding sphere fits both axes with a 5 % margin. An empty or point-sized box is framed as if 1 m wide.
 [[nodiscard]] CameraView framing_view(const glm::dvec3& lo, const glm::dvec3& hi, double aspect);
 
 }  // namespace sheaf

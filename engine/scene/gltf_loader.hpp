@@ -8,12 +8,12 @@
 
 namespace sheaf {
 
-struct LoadLimits {  // what one scene file may ask for; more is Error{limit}
-  std::uint64_t file_bytes = std::uint64_t{4} << 30;      // every file read, together
-  std::uint64_t triangles = 64'000'000;                   // unique, before instancing
+struct LoadLimits {                                   // what one scene file may ask for; more is Error{limit}
+  std::uint64_t file_bytes = std::uint64_t{4} << 30;  // every file read, together
+  std::uint64_t triangles = 64'000'000;               // unique, before instancing
   std::uint64_t vertices = 128'000'000;
   std::uint64_t nodes = 1'000'000;
-  std::uint64_t texture_bytes = std::uint64_t{4} << 30;   // decoded, RGBA8
+  std::uint64_t texture_bytes = std::uint64_t{4} << 30;  // decoded, RGBA8
   std::uint32_t image_side = 16384;
 };
 

@@ -26,7 +26,7 @@ struct Image {  // 8-bit RGBA, rows top to bottom as glTF's UV origin wants; col
 struct Texture {
   std::uint32_t image = none;
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
-  bool nearest = false;  // magnification filter; everything else is linear
+  bool nearest = false;   // magnification filter; everything else is linear
   bool mipmapped = true;  // false where the sampler's minification filter has no mipmap
 };
 
@@ -34,8 +34,8 @@ struct TextureUse {  // how a material reads a texture: KHR_texture_transform fo
   std::uint32_t texture = none;
   std::uint32_t uv_set = 0;
   glm::vec2 offset{0}, scale{1};
-  float rotation = 0;    // radians, counter-clockwise as the extension defines it
-  float strength = 1;    // normal scale or occlusion strength
+  float rotation = 0;  // radians, counter-clockwise as the extension defines it
+  float strength = 1;  // normal scale or occlusion strength
   [[nodiscard]] bool present() const { return texture != none; }
 };
 
@@ -62,24 +62,24 @@ struct MorphTarget {  // deltas, one an attribute a vertex; an empty vector is a
   std::vector<glm::vec3> positions, normals, tangents;
 };
 
-struct Mesh {  // one glTF primitive of triangles: one material
-  std::string name;                   // "meshes[3].primitives[0] (Body)"
-  glm::dvec3 centre{0};               // positions are stored relative to it, so that far-off vertices keep their precision
-  std::vector<glm::vec3> positions;   // object space minus centre
-  std::vector<glm::vec3> normals;     // unit, same count; generated flat where the file has none
-  std::vector<glm::vec4> tangents;    // empty unless the material has a normal map; w = handedness
-  std::vector<glm::vec2> uv0, uv1;    // empty where the file has none
-  std::vector<glm::vec4> colors;      // linear RGBA, empty where the file has none
+struct Mesh {            // one glTF primitive of triangles: one material
+  std::string name;      // "meshes[3].primitives[0] (Body)"
+  glm::dvec3 centre{0};  // positions are stored relative to it, so that far-off vertices keep their precision
+  std::vector<glm::vec3> positions;                  // object space minus centre
+  std::vector<glm::vec3> normals;                    // unit, same count; generated flat where the file has none
+  std::vector<glm::vec4> tangents;                   // empty unless the material has a normal map; w = handedness
+  std::vector<glm::vec2> uv0, uv1;                   // empty where the file has none
+  std::vector<glm::vec4> colors;                     // linear RGBA, empty where the file has none
   std::vector<std::array<std::uint16_t, 8>> joints;  // empty unless skinned; unused places have weight 0
   std::vector<std::array<float, 8>> weights;         // normalised to sum 1
   std::vector<MorphTarget> targets;
   std::vector<glm::uvec3> triangles;
-  std::uint32_t material = 0;         // index into Scene::materials, always valid
+  std::uint32_t material = 0;  // index into Scene::materials, always valid
 };
 
 struct Skin {
-  std::vector<std::uint32_t> joints;          // nodes
-  std::vector<glm::dmat4> inverse_bind;       // one a joint
+  std::vector<std::uint32_t> joints;     // nodes
+  std::vector<glm::dmat4> inverse_bind;  // one a joint
 };
 
 enum class LightKind : std::uint32_t { directional = 0, point = 1, spot = 2 };
@@ -87,8 +87,8 @@ enum class LightKind : std::uint32_t { directional = 0, point = 1, spot = 2 };
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  glm::vec3 color{1};      // linear
-  float intensity = 1;     // candela (point, spot) or lux (directional)
+  glm::vec3 color{1};   // linear
+  float intensity = 1;  // candela (point, spot) or lux (directional)
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = 0.785398163f;  // half-angles
 };
@@ -113,8 +113,8 @@ struct Node {
   glm::dvec3 scale{1};
   std::uint32_t first_mesh = 0, mesh_count = 0;  // range in Scene::meshes: the primitives of its glTF mesh
   std::uint32_t skin = none, camera = none, light = none;
-  std::vector<double> morph_weights;             // rest weights: the node's, else the mesh's
-  std::vector<glm::dmat4> instances;             // EXT_mesh_gpu_instancing: each relative to the node; empty: one, identity
+  std::vector<double> morph_weights;  // rest weights: the node's, else the mesh's
+  std::vector<glm::dmat4> instances;  // EXT_mesh_gpu_instancing: each relative to the node; empty: one, identity
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -124,9 +124,9 @@ struct Channel {
   std::uint32_t node = none;
   ChannelPath path = ChannelPath::translation;
   Interpolation interpolation = Interpolation::linear;
-  std::uint32_t width = 3;        // components of a value: 3, 4, or the number of morph weights
-  std::vector<double> times;      // strictly increasing, at least one
-  std::vector<double> values;     // times × width; CUBICSPLINE: times × 3 × width (in-tangent, value, out-tangent)
+  std::uint32_t width = 3;     // components of a value: 3, 4, or the number of morph weights
+  std::vector<double> times;   // strictly increasing, at least one
+  std::vector<double> values;  // times × width; CUBICSPLINE: times × 3 × width (in-tangent, value, out-tangent)
 };
 
 struct Animation {
@@ -136,21 +136,21 @@ struct Animation {
 };
 
 struct Scene {
-  std::string path;       // as given
-  std::string sha256;     // of the scene file's own bytes, hex; names the scene in EXR attributes
+  std::string path;    // as given
+  std::string sha256;  // of the scene file's own bytes, hex; names the scene in EXR attributes
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<Material> materials;  // at least one: the default
   std::vector<Mesh> meshes;         // flattened: one a primitive
   std::vector<Node> nodes;
-  std::vector<std::uint32_t> roots; // of the chosen glTF scene
-  std::vector<std::uint32_t> order; // nodes reachable from roots, parents before children
+  std::vector<std::uint32_t> roots;  // of the chosen glTF scene
+  std::vector<std::uint32_t> order;  // nodes reachable from roots, parents before children
   std::vector<Skin> skins;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
-  std::vector<std::string> warnings;               // one line each
-  std::vector<std::string> extensions_ignored;     // in extensionsUsed, not supported
+  std::vector<std::string> warnings;            // one line each
+  std::vector<std::string> extensions_ignored;  // in extensionsUsed, not supported
 };
 
 }  // namespace sheaf

@@ -10,9 +10,9 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
   primary_ = Kernel(device, "generate_primary", {&raster, 1});
   const SpecConstant one{0, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
-  const std::array constants{SpecConstant{1, plan.shadows},       SpecConstant{2, plan.reflections},
-                             SpecConstant{3, plan.refractions},   SpecConstant{4, plan.textured_normals},
-                             SpecConstant{5, features.volumes},   SpecConstant{6, counted},
+  const std::array constants{SpecConstant{1, plan.shadows},     SpecConstant{2, plan.reflections},
+                             SpecConstant{3, plan.refractions}, SpecConstant{4, plan.textured_normals},
+                             SpecConstant{5, features.volumes}, SpecConstant{6, counted},
                              SpecConstant{9, features.textured}};
   generate_ = Kernel(device, "generate", constants);
 }
@@ -25,7 +25,8 @@ void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_
   recorder.dispatch(primary_, unused, (pixels + gpu::GROUP - 1) / gpu::GROUP);
 }
 
-void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary, bool last) const {
+void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary,
+                         bool last) const {
   recorder.stage("generate");
   const std::uint32_t primary = is_primary ? 1 : 0;
   recorder.dispatch(begin_, primary, 1);

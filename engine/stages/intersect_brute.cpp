@@ -9,8 +9,9 @@ namespace sheaf {
 IntersectBrute::IntersectBrute(const TraceContext& c) : triangles_(c.scene.triangles()) {
   const bool translucent = c.features.translucent() || c.features.masked;
   auto make = [&](bool any_hit) {
-    const std::array constants{SpecConstant{1, any_hit},  SpecConstant{2, c.features.masked}, SpecConstant{3, any_hit && translucent},
-                               SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
+    const std::array constants{
+        SpecConstant{1, any_hit},   SpecConstant{2, c.features.masked},       SpecConstant{3, any_hit && translucent},
+        SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
     return Kernel(c.device, "intersect_brute", constants);
   };
   nearest_ = make(false);
@@ -18,15 +19,14 @@ IntersectBrute::IntersectBrute(const TraceContext& c) : triangles_(c.scene.trian
 }
 
 void IntersectBrute::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
-  constexpr std::uint32_t slice = 8192;  // triangles a dispatch: seconds at most, even with a million rays on a CPU device
+  constexpr std::uint32_t slice =
+      8192;  // triangles a dispatch: seconds at most, even with a million rays on a CPU device
   recorder.stage("intersect");
   list.bind(recorder);
   std::uint32_t first = 0;
   do {
     const std::uint32_t last = std::min(first + slice, triangles_);
-    const struct {
-      std::uint32_t kind, first, last;
-    } push{kind, first, last};
+    const struct { std::uint32_t kind, first, last; } push{kind, first, last};
     recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, push, gpu::ARGS_RAYS);
     first = last;
   } while (first < triangles_);

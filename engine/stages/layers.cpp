@@ -38,7 +38,8 @@ void allocate_layers(const LayerSet& wanted, FrameLayers& layers) {
 void Layers::store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, FrameLayers& out) {
   const auto words = memory.layers_readback.view<float>();
   const std::size_t pixels = tile.pixels();
-  auto spread = [&](std::vector<float>& to, std::uint32_t first, std::uint32_t channels, std::size_t from, std::size_t at) {
+  auto spread = [&](std::vector<float>& to, std::uint32_t first, std::uint32_t channels, std::size_t from,
+                    std::size_t at) {
     if (to.empty()) return;
     for (std::uint32_t c = 0; c < channels; ++c) to[at * channels + c] = words[(first + c) * pixels + from];
   };

@@ -20,7 +20,8 @@ std::vector<std::uint32_t> roles_of_both() {
 
 }  // namespace
 
-Raster::Raster(const Device& device, const Features& features) : device_(device), layout_(device, roles_of_both(), both_stages) {
+Raster::Raster(const Device& device, const Features& features)
+    : device_(device), layout_(device, roles_of_both(), both_stages) {
   // No attachments: what a fragment finds goes to the visibility buffer by a 64-bit minimum.
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics);
   pass_ = vk::raii::RenderPass(device.logical(), vk::RenderPassCreateInfo({}, {}, subpass));
@@ -41,8 +42,8 @@ Raster::Raster(const Device& device, const Features& features) : device_(device)
   const vk::PipelineColorBlendStateCreateInfo blend;
   const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamics({}, dynamic);
-  vk::GraphicsPipelineCreateInfo info({}, stages, &input, &assembly, nullptr, &viewport, &raster, &multisample, nullptr, &blend,
-                                      &dynamics, layout_.handle(), *pass_);
+  vk::GraphicsPipelineCreateInfo info({}, stages, &input, &assembly, nullptr, &viewport, &raster, &multisample, nullptr,
+                                      &blend, &dynamics, layout_.handle(), *pass_);
   pipeline_ = vk::raii::Pipeline(device.logical(), device.pipeline_cache(), info);
 }
 
@@ -69,8 +70,8 @@ void Raster::record(Recorder& recorder, const DeviceScene& scene, const RayMemor
   const std::uint32_t unused = 0;
   recorder.bind_roles(layout_, vk::PipelineBindPoint::eGraphics, &unused, sizeof(unused), both_stages);
   // The viewport is the whole image's, moved so that the tile's first pixel is at 0.
-  commands.setViewport(0, vk::Viewport(-static_cast<float>(tile.x), -static_cast<float>(tile.y), static_cast<float>(width),
-                                       static_cast<float>(height), 0, 1));
+  commands.setViewport(0, vk::Viewport(-static_cast<float>(tile.x), -static_cast<float>(tile.y),
+                                       static_cast<float>(width), static_cast<float>(height), 0, 1));
   commands.setScissor(0, area);
   commands.draw(scene.triangles() * 3, 1, 0, 0);
   commands.endRenderPass();

@@ -16,8 +16,8 @@ struct Tile {
 class Raster {
  public:
   Raster(const Device& device, const Features& features);
-  void record(Recorder& recorder, const DeviceScene& scene, const RayMemory& memory, const Tile& tile, std::uint32_t width,
-              std::uint32_t height);
+  void record(Recorder& recorder, const DeviceScene& scene, const RayMemory& memory, const Tile& tile,
+              std::uint32_t width, std::uint32_t height);
 
  private:
   const vk::raii::Framebuffer& framebuffer(std::uint32_t width, std::uint32_t height);

@@ -18,7 +18,8 @@ struct HierarchyLevel {
 class RaysHierarchy {
  public:
   explicit RaysHierarchy(const Device& device) : level_(device, "rays_hierarchy") {}
-  void record(Recorder& recorder, const RayMemory& memory, std::uint32_t kind, const std::vector<HierarchyLevel>& levels) const;
+  void record(Recorder& recorder, const RayMemory& memory, std::uint32_t kind,
+              const std::vector<HierarchyLevel>& levels) const;
 
  private:
   Kernel level_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reduce, spine, scatter: the three kernels of one scan (shaders/scan.glsl), dispatched over blocks that the device counted.
+// Reduce, spine, scatter: the three kernels of one scan (shaders/scan.glsl), dispatched over blocks that the device
+// counted.
 #pragma once
 
 #include <string>
@@ -23,7 +24,8 @@ class Scan {
     scatter_ = Kernel(device, stem + "_scatter", {&group, 1});
   }
 
-  /// `args`: the ARGS_… record with one workgroup a block. The spine always runs: it publishes the total, also of nothing.
+  /// `args`: the ARGS_… record with one workgroup a block. The spine always runs: it publishes the total, also of
+  /// nothing.
   void record(Recorder& recorder, const ScanPush& push, std::uint32_t args) const {
     recorder.dispatch_indirect(reduce_, push, args);
     recorder.dispatch(spine_, push, 1);

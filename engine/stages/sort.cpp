@@ -71,7 +71,8 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
 
   recorder.stage("compress");
-  const ScanPush scan{kind, layout.bits(), context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ? 2U : 1U};
+  const ScanPush scan{kind, layout.bits(),
+                      context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ? 2U : 1U};
   compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
   recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
 

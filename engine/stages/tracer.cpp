@@ -12,13 +12,19 @@ namespace sheaf {
 
 std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {
   switch (context.strategy) {
-    case Strategy::bvh: return std::make_unique<TraverseSingle>(context);
-    case Strategy::hybrid: return std::make_unique<TraverseBundles>(context);
+    case Strategy::bvh:
+      return std::make_unique<TraverseSingle>(context);
+    case Strategy::hybrid:
+      return std::make_unique<TraverseBundles>(context);
     case Strategy::rsh:
-    case Strategy::crsh: return std::make_unique<TraversePairs>(context);
-    case Strategy::brute: return std::make_unique<IntersectBrute>(context);
-    case Strategy::rayquery: return std::make_unique<TraverseQuery>(context);
-    default: break;
+    case Strategy::crsh:
+      return std::make_unique<TraversePairs>(context);
+    case Strategy::brute:
+      return std::make_unique<IntersectBrute>(context);
+    case Strategy::rayquery:
+      return std::make_unique<TraverseQuery>(context);
+    default:
+      break;
   }
   throw Error(ErrorKind::usage, std::string("strategy ") + name_of(context.strategy) + " has no tracer");
 }

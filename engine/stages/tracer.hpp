@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What turns a list of rays into hits. One code path; strategies (algorithm 9) exchange its parts: whether rays are sorted,
-// whether a hierarchy stands over them, and how it meets the objects. All leave the same bytes in the list's hits.
+// What turns a list of rays into hits. One code path; strategies (algorithm 9) exchange its parts: whether rays are
+// sorted, whether a hierarchy stands over them, and how it meets the objects. All leave the same bytes in the list's
+// hits.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strategy `hybrid`: rays sorted where it pays, a hierarchy level of bundles, tight bundles walked through the object hierarchy by
-// a subgroup each, the rays of loose ones one a lane.
+// Strategy `hybrid`: rays sorted where it pays, a hierarchy level of bundles, tight bundles walked through the object
+// hierarchy by a subgroup each, the rays of loose ones one a lane.
 #pragma once
 
 #include "stages/sort.hpp"

@@ -7,9 +7,9 @@
 namespace sheaf {
 namespace {
 
-constexpr std::uint32_t mesh_levels = 3;          // levels below the root on which mesh spheres stand for their triangles
+constexpr std::uint32_t mesh_levels = 3;  // levels below the root on which mesh spheres stand for their triangles
 constexpr std::uint32_t least_batch = 4096;
-constexpr std::uint32_t most_seeds = 1U << 16U;   // of one upload
+constexpr std::uint32_t most_seeds = 1U << 16U;  // of one upload
 
 std::uint32_t groups(std::uint64_t items) { return static_cast<std::uint32_t>((items + gpu::GROUP - 1) / gpu::GROUP); }
 
@@ -22,8 +22,9 @@ TraversePairs::TraversePairs(const TraceContext& c)
   test_ = Kernel(c.device, "traverse_pairs", counting);
   const bool translucent = c.features.translucent() || c.features.masked;
   auto make = [&](bool any_hit) {
-    const std::array constants{SpecConstant{1, any_hit},  SpecConstant{2, c.features.masked}, SpecConstant{3, any_hit && translucent},
-                               SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
+    const std::array constants{
+        SpecConstant{1, any_hit},   SpecConstant{2, c.features.masked},       SpecConstant{3, any_hit && translucent},
+        SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
     return Kernel(c.device, "intersect_pairs", constants);
   };
   nearest_ = make(false);
@@ -50,7 +51,8 @@ void TraversePairs::objects_moved(Recorder& recorder, const Motion& motion) {
   recorder.bind(ROLE_SPHERES, triangle_spheres_);
   recorder.bind(ROLE_MESH_SPHERES, mesh_spheres_);
   recorder.dispatch(spheres_, 0U, groups(context_.scene.triangles()));
-  if (context_.strategy == Strategy::crsh) recorder.dispatch(spheres_, 1U, groups(context_.scene.layout().instances.size()));
+  if (context_.strategy == Strategy::crsh)
+    recorder.dispatch(spheres_, 1U, groups(context_.scene.layout().instances.size()));
 }
 
 std::uint32_t TraversePairs::read_counter(Recorder& recorder, std::uint32_t counter) {
@@ -96,9 +98,7 @@ void TraversePairs::descend(Recorder& recorder, const Walk& walk, std::uint32_t 
   } else {
     recorder.stage("intersect");
     recorder.bind(ROLE_PAIRS, survivors_[level]);
-    const struct {
-      std::uint32_t kind, pairs, reset;
-    } push{walk.kind, pairs, 0};
+    const struct { std::uint32_t kind, pairs, reset; } push{walk.kind, pairs, 0};
     recorder.dispatch(walk.kind == gpu::KIND_SHADOW ? any_ : nearest_, push, groups(pairs));
   }
 }
@@ -131,7 +131,8 @@ void TraversePairs::walk_seeds(Recorder& recorder, const Walk& walk, std::uint32
   }
 }
 
-// C's coarse phase: nodes against the meshes' spheres, a few levels down; the survivors open into the meshes' triangles.
+// C's coarse phase: nodes against the meshes' spheres, a few levels down; the survivors open into the meshes'
+// triangles.
 std::vector<PairSeed> TraversePairs::mesh_seeds(Recorder& recorder, Walk walk, std::uint32_t top, std::uint32_t& level,
                                                 std::uint64_t& candidates) {
   std::vector<glm::uvec2> pairs;
@@ -152,9 +153,7 @@ std::vector<PairSeed> TraversePairs::mesh_seeds(Recorder& recorder, Walk walk, s
 }
 
 void TraversePairs::reset_hits(Recorder& recorder, std::uint32_t kind) {
-  const struct {
-    std::uint32_t kind, pairs, reset;
-  } push{kind, 0, 1};
+  const struct { std::uint32_t kind, pairs, reset; } push{kind, 0, 1};
   recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, push, gpu::ARGS_RAYS);
 }
 

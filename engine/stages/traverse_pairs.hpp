@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Strategies `rsh` (H: unsorted rays, triangle spheres) and `crsh` (R, C: sorted rays, mesh spheres, then triangle spheres):
-// breadth-first traversal of the ray hierarchy with compaction after every level (R 4.4), then local intersection (R 4.5).
-// Memory is bounded: a level whose candidates do not fit is cut into batches, each walked to the rays before the next. No pair
-// is ever dropped.
+// Strategies `rsh` (H: unsorted rays, triangle spheres) and `crsh` (R, C: sorted rays, mesh spheres, then triangle
+// spheres): breadth-first traversal of the ray hierarchy with compaction after every level (R 4.4), then local
+// intersection (R 4.5). Memory is bounded: a level whose candidates do not fit is cut into batches, each walked to the
+// rays before the next. No pair is ever dropped.
 #pragma once
 
 #include "stages/rays_hierarchy.hpp"
@@ -26,10 +26,11 @@ class TraversePairs final : public Tracer {
   struct Walk {  // one list's traversal
     std::uint32_t kind = 0;
     std::vector<HierarchyLevel> levels;
-    std::uint32_t bottom = 0;             // level whose survivors are wanted
+    std::uint32_t bottom = 0;                      // level whose survivors are wanted
     std::vector<glm::uvec2>* survivors = nullptr;  // collected here instead of intersected
   };
-  void walk_seeds(Recorder& recorder, const Walk& walk, std::uint32_t level, std::vector<PairSeed> seeds, std::uint64_t candidates);
+  void walk_seeds(Recorder& recorder, const Walk& walk, std::uint32_t level, std::vector<PairSeed> seeds,
+                  std::uint64_t candidates);
   void walk_parents(Recorder& recorder, const Walk& walk, std::uint32_t level, std::uint32_t parents);
   void test(Recorder& recorder, const Walk& walk, std::uint32_t level, std::uint32_t candidates, std::uint32_t offset,
             std::uint32_t seeds);

@@ -8,7 +8,8 @@
 
 namespace sheaf {
 
-Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t bytes, Kind kind, vk::BufferUsageFlags extra)
+Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t bytes, Kind kind,
+               vk::BufferUsageFlags extra)
     : device_(&device), bytes_(std::max<std::uint64_t>((bytes + 3) / 4 * 4, 16)) {
   using Usage = vk::BufferUsageFlagBits;
   using Property = vk::MemoryPropertyFlagBits;

@@ -14,7 +14,8 @@ namespace {
 
 std::atomic<std::uint64_t> validation_count{0};
 
-VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                          VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
   if (severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT) {
     validation_count.fetch_add(1);
@@ -57,7 +58,8 @@ std::uint32_t compute_graphics_family(const vk::raii::PhysicalDevice& physical) 
   return VK_QUEUE_FAMILY_IGNORED;
 }
 
-bool supports_ray_query(const vk::raii::PhysicalDevice& physical, const std::vector<vk::ExtensionProperties>& extensions) {
+bool supports_ray_query(const vk::raii::PhysicalDevice& physical,
+                        const std::vector<vk::ExtensionProperties>& extensions) {
   if (!has_extension(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME) ||
       !has_extension(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) ||
       !has_extension(extensions, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME))
@@ -68,8 +70,8 @@ bool supports_ray_query(const vk::raii::PhysicalDevice& physical, const std::vec
          chain.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure != VK_FALSE;
 }
 
-void check_requirements(const vk::raii::PhysicalDevice& physical, const std::vector<vk::ExtensionProperties>& extensions,
-                        DeviceSummary& summary) {
+void check_requirements(const vk::raii::PhysicalDevice& physical,
+                        const std::vector<vk::ExtensionProperties>& extensions, DeviceSummary& summary) {
   const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
   const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& twelve = chain.get<vk::PhysicalDeviceVulkan12Features>();
@@ -83,7 +85,8 @@ void check_requirements(const vk::raii::PhysicalDevice& physical, const std::vec
   need(twelve.scalarBlockLayout != VK_FALSE, "scalarBlockLayout");
   need(twelve.shaderBufferInt64Atomics != VK_FALSE, "shaderBufferInt64Atomics");
   need(has_extension(extensions, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME), "VK_KHR_push_descriptor");
-  need(compute_graphics_family(physical) != VK_QUEUE_FAMILY_IGNORED, "a queue for graphics and compute with timestamps");
+  need(compute_graphics_family(physical) != VK_QUEUE_FAMILY_IGNORED,
+       "a queue for graphics and compute with timestamps");
 }
 
 DeviceSummary summarise(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
@@ -97,7 +100,8 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical, std::uint32_t 
   summary.name = properties.deviceName.data();
   summary.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
   summary.kind = vk::to_string(properties.deviceType);
-  std::transform(summary.kind.begin(), summary.kind.end(), summary.kind.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(summary.kind.begin(), summary.kind.end(), summary.kind.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   summary.api = std::to_string(VK_API_VERSION_MAJOR(properties.apiVersion)) + "." +
                 std::to_string(VK_API_VERSION_MINOR(properties.apiVersion)) + "." +
                 std::to_string(VK_API_VERSION_PATCH(properties.apiVersion));
@@ -114,11 +118,16 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical, std::uint32_t 
 
 int preference(const vk::raii::PhysicalDevice& physical) {
   switch (physical.getProperties().deviceType) {
-    case vk::PhysicalDeviceType::eDiscreteGpu: return 4;
-    case vk::PhysicalDeviceType::eIntegratedGpu: return 3;
-    case vk::PhysicalDeviceType::eVirtualGpu: return 2;
-    case vk::PhysicalDeviceType::eCpu: return 1;
-    default: return 0;
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+      return 4;
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+      return 3;
+    case vk::PhysicalDeviceType::eVirtualGpu:
+      return 2;
+    case vk::PhysicalDeviceType::eCpu:
+      return 1;
+    default:
+      return 0;
   }
 }
 
@@ -136,7 +145,8 @@ std::string reasons(const std::vector<DeviceSummary>& all) {
 
 std::uint32_t choose(const std::vector<vk::raii::PhysicalDevice>& physical, const std::vector<DeviceSummary>& all,
                      const std::string& selector) {
-  if (all.empty()) throw Error(ErrorKind::device, "Vulkan: no device found (install a driver, for example Mesa's lavapipe)");
+  if (all.empty())
+    throw Error(ErrorKind::device, "Vulkan: no device found (install a driver, for example Mesa's lavapipe)");
   std::uint32_t wanted = 0;
   const auto* end = selector.data() + selector.size();
   const bool is_index = !selector.empty() && std::from_chars(selector.data(), end, wanted).ptr == end;
@@ -147,7 +157,8 @@ std::uint32_t choose(const std::vector<vk::raii::PhysicalDevice>& physical, cons
     if (best == VK_QUEUE_FAMILY_IGNORED || preference(physical[i]) > preference(physical[best])) best = i;
   }
   if (best == VK_QUEUE_FAMILY_IGNORED)
-    throw Error(ErrorKind::device, "Vulkan: no usable device" + (selector.empty() ? "" : " matches '" + selector + "'") + reasons(all));
+    throw Error(ErrorKind::device,
+                "Vulkan: no usable device" + (selector.empty() ? "" : " matches '" + selector + "'") + reasons(all));
   return best;
 }
 

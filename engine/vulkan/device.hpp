@@ -22,7 +22,7 @@ struct DeviceSummary {  // what `sheaf devices` shows
 
 struct DeviceLimits {
   std::uint32_t subgroup = 8;
-  std::uint64_t storage_range = 0;     // bytes one storage buffer binding may span
+  std::uint64_t storage_range = 0;  // bytes one storage buffer binding may span
   std::uint32_t groups_x = 65535;
   float timestamp_ns = 1;
   bool cpu = false;

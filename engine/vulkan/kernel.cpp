@@ -25,10 +25,11 @@ PipelineLayout::PipelineLayout(const Device& device, std::vector<std::uint32_t> 
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
   for (const auto role : roles_)
     bindings.emplace_back(
-        role, role == ROLE_STRUCTURE ? vk::DescriptorType::eAccelerationStructureKHR : vk::DescriptorType::eStorageBuffer, 1,
+        role,
+        role == ROLE_STRUCTURE ? vk::DescriptorType::eAccelerationStructureKHR : vk::DescriptorType::eStorageBuffer, 1,
         stages);
-  set_ = vk::raii::DescriptorSetLayout(
-      device.logical(), {vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, bindings});
+  set_ = vk::raii::DescriptorSetLayout(device.logical(),
+                                       {vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, bindings});
   const vk::PushConstantRange range(stages, 0, push_bytes);
   layout_ = vk::raii::PipelineLayout(device.logical(), vk::PipelineLayoutCreateInfo({}, *set_, range));
 }

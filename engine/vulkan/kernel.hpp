@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A compute pipeline and the buffer roles its SPIR-V reads. Roles are binding numbers that mean the same in every shader,
-// so the layout comes from the code itself and a dispatch needs no list of bindings.
+// A compute pipeline and the buffer roles its SPIR-V reads. Roles are binding numbers that mean the same in every
+// shader, so the layout comes from the code itself and a dispatch needs no list of bindings.
 #pragma once
 
 #include <cstdint>

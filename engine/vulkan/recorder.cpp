@@ -13,7 +13,8 @@ Recorder::Recorder(const Device& device) : device_(device), unbound_(device, "un
   bound_.fill(unbound_.handle());
   pool_ = vk::raii::CommandPool(device.logical(),
                                 {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
-  commands_ = std::move(vk::raii::CommandBuffers(device.logical(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
+  commands_ =
+      std::move(vk::raii::CommandBuffers(device.logical(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
   fence_ = vk::raii::Fence(device.logical(), vk::FenceCreateInfo{});
   queries_ = vk::raii::QueryPool(device.logical(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, max_marks));
 }
@@ -30,9 +31,11 @@ void Recorder::begin() {
 }
 
 void Recorder::mark(const char* name) {
-  commands_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *queries_, static_cast<std::uint32_t>(marks_.size()));
+  commands_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *queries_,
+                           static_cast<std::uint32_t>(marks_.size()));
   marks_.push_back(name);
-  // llvmpipe takes the time when the stamp's scene is flushed, which a barrier does; without it the next dispatch comes first.
+  // llvmpipe takes the time when the stamp's scene is flushed, which a barrier does; without it the next dispatch comes
+  // first.
   barrier();
 }
 
@@ -46,8 +49,8 @@ void Recorder::stage(const char* name) {
     mark(name);
 }
 
-void Recorder::bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint point, const void* push, std::size_t bytes,
-                          vk::ShaderStageFlags stages) {
+void Recorder::bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint point, const void* push,
+                          std::size_t bytes, vk::ShaderStageFlags stages) {
   std::array<vk::DescriptorBufferInfo, ROLE_COUNT> infos;
   std::vector<vk::WriteDescriptorSet> writes;
   writes.reserve(layout.roles().size());
@@ -108,7 +111,8 @@ void Recorder::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, s
 
 void Recorder::update(const Buffer& buffer, const void* data, std::uint64_t bytes) {
   begin();
-  commands_.updateBuffer<std::byte>(buffer.handle(), 0, {static_cast<std::uint32_t>(bytes), static_cast<const std::byte*>(data)});
+  commands_.updateBuffer<std::byte>(buffer.handle(), 0,
+                                    {static_cast<std::uint32_t>(bytes), static_cast<const std::byte*>(data)});
   barrier();
 }
 
@@ -117,8 +121,8 @@ void Recorder::barrier() {
   using Stage = vk::PipelineStageFlagBits;
   using Access = vk::AccessFlagBits;
   const vk::MemoryBarrier all(Access::eShaderWrite | Access::eTransferWrite | Access::eHostWrite,
-                              Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead | Access::eTransferWrite |
-                                  Access::eIndirectCommandRead | Access::eHostRead);
+                              Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
+                                  Access::eTransferWrite | Access::eIndirectCommandRead | Access::eHostRead);
   const auto from = Stage::eComputeShader | Stage::eTransfer | Stage::eHost | Stage::eAllGraphics;
   const auto to = from | Stage::eDrawIndirect;
   commands_.pipelineBarrier(from, to, {}, all, {}, {});
@@ -138,8 +142,10 @@ void Recorder::submit_and_wait() {
     throw Error(ErrorKind::device, device_.summary().name + ": " + error.what());
   }
   const auto count = static_cast<std::uint32_t>(marks_.size());
-  const auto stamps = queries_.getResults<std::uint64_t>(0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                                         vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait).second;
+  const auto stamps = queries_
+                          .getResults<std::uint64_t>(0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                                     vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
+                          .second;
   for (std::uint32_t i = 0; i + 1 < count; ++i)
     if (*marks_[i] != '\0')
       times_[marks_[i]] += static_cast<double>(stamps[i + 1] - stamps[i]) * device_.limits().timestamp_ns * 1e-6;

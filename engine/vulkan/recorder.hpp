@@ -62,8 +62,10 @@ class Recorder {
 
  private:
   void begin();
-  void dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups, bool barrier_after);
-  void indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args, bool barrier_after);
+  void dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups,
+                      bool barrier_after);
+  void indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args,
+                      bool barrier_after);
   void prepare(const Kernel& kernel, const void* push, std::size_t bytes);
   void mark(const char* name);
 
