@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <functional>
+
 #include "device_fixture.hpp"
 #include "stages/compact.hpp"
 #include "stages/scan.hpp"
