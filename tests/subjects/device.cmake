@@ -7,7 +7,7 @@ foreach(name IN LISTS device_tests)
   target_link_libraries(${name} PRIVATE sheaf_options sheaf_core GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SHEAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   add_dependencies(unit_tests ${name})
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ENVIRONMENT SHEAF_VALIDATION=1)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ENVIRONMENT SHEAF_VALIDATION=1 LABELS device)
   # Parsed once for all of them: vulkan_raii.hpp alone takes longer than most of these files.
   if(name STREQUAL device_scan_test)
     target_precompile_headers(${name} PRIVATE <vulkan/vulkan_raii.hpp> <gtest/gtest.h> <glm/glm.hpp> <vector>)
