@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "http/exchange.hpp"
 
-#include <new>
+#include <algorithm>
 
 #include "util/log.hpp"
 
@@ -52,6 +52,25 @@ void fill_stream(httplib::Response& response, StreamBody body, const std::string
     response.set_content_provider(type, provider);
 }
 
+class RehearsalStream : public httplib::Stream {
+ public:
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return true; }
+  ssize_t read(char* into, size_t size) override {
+    const std::size_t n = std::min(size, request_.size());
+    request_.copy(into, n);
+    request_.remove_prefix(n);
+    return static_cast<ssize_t>(n);
+  }
+  ssize_t write(const char*, size_t size) override { return static_cast<ssize_t>(size); }
+  void get_remote_ip_and_port(std::string&, int&) const override {}
+  void get_local_ip_and_port(std::string&, int&) const override {}
+  socket_t socket() const override { return 0; }
+
+ private:
+  std::string_view request_ = "GET / HTTP/1.1\r\n\r\n";
+};
+
 }  // namespace
 
 ExchangeScope::ExchangeScope(Answer answer) : answer_(std::move(answer)) { current = &answer_; }
@@ -90,6 +109,17 @@ void fill(httplib::Response& response, Reply reply, const RequestHead& head) {
     fill_stream(response, std::move(*reply.stream), reply.content_type, !head.http_1_0);
   else if (!reply.body.empty())
     response.set_content(reply.body, reply.content_type);
+}
+
+void rehearse(const std::function<bool(httplib::Stream&)>& run) {
+  RehearsalStream stream;
+  const ExchangeScope scope([](httplib::Response& response) {
+    Reply reply;
+    reply.content_type = "text/plain";
+    reply.stream = StreamBody{std::nullopt, [](const Writer& write) { return write("."); }};
+    fill(response, std::move(reply), RequestHead{});
+  });
+  if (!run(stream)) throw io_error("cpp-httplib", "an exchange with nobody failed");
 }
 
 std::string plain_refusal(const Problem& problem) {

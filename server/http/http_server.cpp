@@ -51,6 +51,8 @@ HttpServer::HttpServer(HttpOptions options, Handler handler, Observer observer)
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (!epoll_.valid() || !wake_.valid()) throw io_error("epoll", std::strerror(errno));
   install_exchange(*this);
+  svr_sock_ = epoll_.get();  // the library takes any valid descriptor for "running"
+  rehearse([this](httplib::Stream& stream) { return run_exchange(*this, &HttpServer::process_request, stream); });
   watch(epoll_.get(), wake_.get(), EPOLLIN);
 }
 
@@ -77,7 +79,6 @@ std::string HttpServer::bind(const std::string& host, const std::string& port) {
     failure = errno;
   }
   if (!listener_.valid()) throw io_error("listen " + name, std::strerror(failure));
-  svr_sock_ = listener_.get();  // the library takes any other value for "running"
   watch(epoll_.get(), listener_.get(), EPOLLIN);
   return bound_name(listener_.get());
 }
