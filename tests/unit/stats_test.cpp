@@ -40,7 +40,16 @@ RunStats sample() {
                      .repeated = false,
                      .generations = {}};
   counted.node_object_by_level[1] = {10, 30};
-  counted.generations.push_back({1, RayKind::shadow, 20, 5, 3, true, 17, "keys pay", {10, 30}});
+  counted.generations.push_back({.index = 1,
+                                 .kind = RayKind::shadow,
+                                 .rays = 20,
+                                 .chunks = 5,
+                                 .nodes = 3,
+                                 .tight = 2,
+                                 .sorted = true,
+                                 .key_bits = 17,
+                                 .sort_reason = "keys pay",
+                                 .pairs_per_level = {10, 30}});
   FrameStats timed = counted;
   timed.frame = 13;
   timed.counted = false;
@@ -61,7 +70,7 @@ TEST(StatsJson, FrameHasTheSchemasNames) {
               "node_object_by_level": {"primary": [], "shadow": [10, 30]},
               "ray_box": {"primary": 0, "shadow": 30},
               "ray_triangle": {"primary": 0, "shadow": 20}},
-    "generations": [{"generation": 1, "kind": "shadow", "rays": 20, "chunks": 5, "nodes": 3, "sorted": true,
+    "generations": [{"generation": 1, "kind": "shadow", "rays": 20, "chunks": 5, "nodes": 3, "tight": 2, "sorted": true,
                      "key_bits": 17, "sort_reason": "keys pay", "pairs_per_level": [10, 30]}]})");
   EXPECT_EQ(json(to_json(sample())["frames"][0]), expected);
 }
