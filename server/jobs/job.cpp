@@ -40,6 +40,8 @@ Json frame_to_json(const Job& job, const Frame& frame) {
   json["sha256"] = frame.exr->sha256;
   json["exr"] = base + ".exr";
   json["png"] = frame.png ? Json(base + ".png") : Json(nullptr);
+  json["png_bytes"] = frame.png ? Json(frame.png->bytes) : Json(nullptr);
+  json["png_sha256"] = frame.png ? Json(frame.png->sha256) : Json(nullptr);
   return json;
 }
 

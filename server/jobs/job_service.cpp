@@ -89,16 +89,35 @@ std::shared_ptr<EventLog> JobService::events(const std::string& id) const {
   return events;
 }
 
+/// False if there is nothing to be done: the job has ended, or was asked before.
+bool JobService::ask_to_stop(Job& job, EventLog& events) {
+  if (is_finished(job.state) || job.cancel_requested) return false;
+  job.cancel_requested = true;
+  if (job.state == JobState::queued) {
+    finish_job(job, events, JobState::cancelled, std::nullopt, options_.runner.retention);
+    counters_.ended(JobState::cancelled);
+  }
+  return true;
+}
+
+Job JobService::cancel(const std::string& id) {
+  std::optional<Job> found;
+  store_.update(id, [&](Job& job, EventLog& events) {
+    ask_to_stop(job, events);
+    found = job;
+  });
+  if (!found) refuse_missing(id);
+  if (found->cancel_requested) {
+    queue_->forget(id);
+    queue_->stop_worker(id, false);
+  }
+  return *std::move(found);
+}
+
 std::optional<Job> JobService::cancel_or_remove(const std::string& id) {
   std::optional<Job> cancelled;
   const bool there = store_.update(id, [&](Job& job, EventLog& events) {
-    if (is_finished(job.state) || job.cancel_requested) return;
-    job.cancel_requested = true;
-    if (job.state == JobState::queued) {
-      finish_job(job, events, JobState::cancelled, std::nullopt, options_.runner.retention);
-      counters_.ended(JobState::cancelled);
-    }
-    cancelled = job;
+    if (ask_to_stop(job, events)) cancelled = job;
   });
   if (!there) refuse_missing(id);
   if (!cancelled) {

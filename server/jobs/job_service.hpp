@@ -41,6 +41,10 @@ class JobService {
   [[nodiscard]] Job get(const std::string& id) const;
   [[nodiscard]] std::shared_ptr<EventLog> events(const std::string& id) const;
 
+  /// Asks an unfinished job to stop; a finished one stays as it is. Returns the job as it is now. Throws Problem: 404,
+  /// 410.
+  Job cancel(const std::string& id);
+
   /// Unfinished: asks it to stop and returns the job as it is now. Finished, or asked before: removes it and returns
   /// nothing. Throws Problem: 404, 410.
   std::optional<Job> cancel_or_remove(const std::string& id);
@@ -56,6 +60,7 @@ class JobService {
   [[nodiscard]] bool stopping() const { return stopping_; }
 
  private:
+  bool ask_to_stop(Job& job, EventLog& events);
   [[noreturn]] void refuse_missing(const std::string& id) const;
   void remove(const std::string& id);
   void worker_gone(const std::string& id);

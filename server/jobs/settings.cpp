@@ -133,9 +133,9 @@ std::string fps(const json& value, Context& context) {
   return json(static_cast<double>(over) / static_cast<double>(under)).dump();
 }
 
-template <std::uint64_t Limits::*limit>
+template <std::uint64_t Limits::*limit, std::uint64_t least = 1>
 std::string bounded(const json& value, Context& context) {
-  const std::uint64_t number = whole(value, context, 1);
+  const std::uint64_t number = whole(value, context, least);
   context.bound(number, context.limits.*limit, "asked for");
   return std::to_string(number);
 }
@@ -199,7 +199,7 @@ constexpr std::array table{Setting{"frames", frames},
                            Setting{"camera-node", name_or_index},
                            Setting{"size", size},
                            Setting{"spp", bounded<&Limits::spp>},
-                           Setting{"depth", bounded<&Limits::depth>},
+                           Setting{"depth", bounded<&Limits::depth, 0>},
                            Setting{"cutoff", cutoff},
                            Setting{"strategy", choice<strategies>},
                            Setting{"sort", choice<switches>},

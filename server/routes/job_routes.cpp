@@ -70,7 +70,14 @@ Reply look(RouteContext& context, Request& request) {
   return json_reply(200, job_to_json(context.service.get(request.parameters["id"])));
 }
 
+/// Whatever happens at the same time, this never removes a job: 202 while it stops, 200 once it has ended.
 Reply cancel(RouteContext& context, Request& request) {
+  request.allow_arguments({});
+  const Job job = context.service.cancel(request.parameters["id"]);
+  return json_reply(is_finished(job.state) ? 200 : 202, job_to_json(job));
+}
+
+Reply cancel_or_remove(RouteContext& context, Request& request) {
   request.allow_arguments({});
   const std::optional<Job> job = context.service.cancel_or_remove(request.parameters["id"]);
   if (job) return json_reply(202, job_to_json(*job));
@@ -85,7 +92,8 @@ void add_job_routes(Router& router, RouteContext& context) {
   router.add("POST", "/v1/jobs", [&context](Request& request) { return submit(context, request); });
   router.add("GET", "/v1/jobs", [&context](Request& request) { return list(context, request); });
   router.add("GET", "/v1/jobs/{id}", [&context](Request& request) { return look(context, request); });
-  router.add("DELETE", "/v1/jobs/{id}", [&context](Request& request) { return cancel(context, request); });
+  router.add("DELETE", "/v1/jobs/{id}", [&context](Request& request) { return cancel_or_remove(context, request); });
+  router.add("POST", "/v1/jobs/{id}/cancel", [&context](Request& request) { return cancel(context, request); });
 }
 
 Reply handle(const Router& router, Request& request) {

@@ -35,6 +35,13 @@ std::string take_quoted(std::string_view& text) {
   malformed("a quoted parameter does not end");
 }
 
+/// Browsers and most HTTP libraries write a '"' in a name as %22 and leave every other '%' as it is (WHATWG HTML,
+/// "multipart/form-data encoding algorithm").
+std::string with_quotes(std::string text) {
+  for (auto at = text.find("%22"); at != std::string::npos; at = text.find("%22", at + 1)) text.replace(at, 3, "\"");
+  return text;
+}
+
 /// `; name=value` pairs behind a header's first word. Names in lower case.
 std::map<std::string, std::string> parameters_of(std::string_view text) {
   std::map<std::string, std::string> parameters;
@@ -120,7 +127,7 @@ PartHeader parse_part_header(std::string_view lines) {
     if (parameters.contains("filename*"))
       part.filename = decoded_filename(parameters["filename*"]);
     else if (parameters.contains("filename"))
-      part.filename = parameters["filename"];
+      part.filename = with_quotes(parameters["filename"]);
   }
   if (part.name.empty()) malformed("a part has no name");
   return part;

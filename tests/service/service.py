@@ -103,6 +103,11 @@ class Service:
         assert reply.status_code == 200, reply.text
         return reply.json()
 
+    def wait_until_ready(self) -> None:
+        """Until the devices have been looked for."""
+        while "still being looked for" in self.http.get("/readyz").text:
+            pass
+
     def events(self, job: str) -> Iterator[dict]:
         """Events by long poll until the job has ended."""
         after, ended = 0, False

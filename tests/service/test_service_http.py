@@ -43,6 +43,7 @@ def test_unknown_routes_and_methods(sheafd: Service) -> None:
 def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
     job = sheafd.accepted(gltf(), {"frames": 0})
     sheafd.wait(job)
+    sheafd.wait_until_ready()
     for path in (
         "/healthz",
         "/readyz",

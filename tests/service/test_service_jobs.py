@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Submitting, listing, cancelling and removing jobs."""
 
+import hashlib
 import re
 from collections.abc import Callable
 
@@ -216,6 +217,44 @@ def test_cancel_a_running_job_keeps_its_whole_frames(sheafd: Service, gate: Gate
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/1.exr"), 404, "not-produced")
     assert sheafd.http.delete(f"/v1/jobs/{job}").status_code == 204
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/0.exr"), 410, "job-removed")
+
+
+def test_cancelling_never_removes(sheafd: Service, gate: Gate) -> None:
+    job = sheafd.accepted(gltf(gates={"1": gate.path}), {"frames": "0-1"})
+    queued = sheafd.accepted(gltf(), {"frames": 0})
+    sheafd.wait_for_frame(job, 0)
+    reply = sheafd.http.post(f"/v1/jobs/{queued}/cancel")
+    assert reply.status_code == 200 and reply.json()["state"] == "cancelled"
+    reply = sheafd.http.post(f"/v1/jobs/{job}/cancel")
+    assert reply.status_code == 202 and reply.json()["cancel_requested"] is True
+    assert sheafd.wait(job)["state"] == "cancelled"
+    for _ in range(3):  # DELETE would have removed it by now
+        reply = sheafd.http.post(f"/v1/jobs/{job}/cancel")
+        assert reply.status_code == 200 and reply.json()["state"] == "cancelled"
+    done = sheafd.accepted(gltf(), {"frames": 0})
+    sheafd.wait(done)
+    assert sheafd.http.post(f"/v1/jobs/{done}/cancel").json()["state"] == "done"
+    assert sheafd.http.get(f"/v1/jobs/{done}/frames/0.exr").status_code == 200
+    check_problem(sheafd.http.post(f"/v1/jobs/{'a' * 26}/cancel"), 404, "unknown-job")
+    sheafd.http.delete(f"/v1/jobs/{done}")
+    check_problem(sheafd.http.post(f"/v1/jobs/{done}/cancel"), 410, "job-removed")
+
+
+def test_no_depth_at_all(sheafd: Service) -> None:
+    job = sheafd.accepted(gltf(), {"frames": 0, "depth": 0})
+    assert sheafd.wait(job)["settings"]["depth"] == 0
+    assert "--depth=0" in arguments(sheafd, job)
+
+
+def test_checksums_of_frames_and_previews(sheafd: Service) -> None:
+    job = sheafd.accepted(gltf(), {"frames": "0-1"})
+    for frame in sheafd.wait(job)["frames"]:
+        for kind in ("", "png_"):
+            data = sheafd.http.get(frame[kind.rstrip("_") or "exr"]).content
+            assert frame[kind + "sha256"] == hashlib.sha256(data).hexdigest()
+            assert frame[kind + "bytes"] == len(data)
+    bare = sheafd.accepted(gltf(), {"frames": 0, "preview": False})
+    assert sheafd.wait(bare)["frames"][0]["png_sha256"] is None
 
 
 def test_a_finished_job_expires(start: Callable[..., Service]) -> None:

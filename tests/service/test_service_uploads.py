@@ -29,6 +29,15 @@ def test_a_gltf_with_its_files(sheafd: Service) -> None:
     assert (folder / "textures" / "wood grain.png").read_bytes() == b"image"
 
 
+@pytest.mark.parametrize("written", ['say %22hi%22.png', 'say \\"hi\\".png'])
+def test_file_names_with_quotes(sheafd: Service, written: str) -> None:
+    part = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="%s"\r\n\r\n{}\r\n'
+    body = part % (b"scene", b"s.gltf") + part % (b"file", written.encode()) + b"--b--\r\n"
+    reply = sheafd.http.post("/v1/jobs", content=body, headers={"Content-Type": "multipart/form-data; boundary=b"})
+    assert reply.status_code == 202, reply.text
+    assert (sheafd.data / "jobs" / reply.json()["id"] / "scene" / 'say "hi".png').read_text() == "{}"
+
+
 def test_a_camera_is_passed_on(sheafd: Service) -> None:
     camera = {"version": 1, "keys": []}
     job = sheafd.accepted(gltf(), {"frames": 0}, parts=[("camera", ("path.json", json.dumps(camera)))])
