@@ -32,6 +32,7 @@ NAMES = [
     "Progress",
     "ProgressBar",
     "ProtocolError",
+    "RenderError",
     "RenderSettings",
     "RetryPolicy",
     "SceneError",

@@ -8,6 +8,7 @@
     ├── FrameError            an EXR file cannot be read as a frame (also a ValueError)
     ├── TransportError        the service was not reached, fell silent, or the connection broke
     ├── ProtocolError         the answer is not what a sheafd sends
+    ├── RenderError           the program `sheaf` did not render, on this machine or on one of a farm
     ├── Timeout               the caller's own limit passed while waiting (also a TimeoutError)
     ├── ApiError              the service refused, as problem+json (RFC 9457)
     │   ├── InvalidRequest    400, 422: settings, scene or camera are bad
@@ -51,6 +52,21 @@ class ProtocolError(SheafError):
 
 class Timeout(SheafError, TimeoutError):  # noqa: N818 - reads as what happened
     """The time that the caller allowed for waiting is over; the job goes on."""
+
+
+class RenderError(SheafError):
+    """The program `sheaf` did not do what it was asked to.
+
+    Attributes:
+        exit_code: the program's, as `sheaf --help` lists them; None where a signal or a time limit ended it.
+    """
+
+    def __init__(self, text: str, exit_code: int | None = None) -> None:
+        super().__init__(text)
+        self.exit_code = exit_code
+
+    def __reduce__(self) -> tuple[type[RenderError], tuple[str, int | None]]:
+        return type(self), (str(self), self.exit_code)  # it travels between machines
 
 
 class ApiError(SheafError):

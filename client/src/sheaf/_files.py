@@ -66,9 +66,14 @@ def whole_file(target: Path) -> Iterator[WholeFile]:
 
 def write_whole(target: Path, text: str) -> None:
     """Writes a text file, whole or not at all."""
+    write_whole_bytes(target, text.encode())
+
+
+def write_whole_bytes(target: Path, data: bytes) -> None:
+    """Writes a file, whole or not at all."""
     part = _part_name(target)
     try:
-        part.write_text(text, encoding="utf-8")
+        part.write_bytes(data)
         part.replace(target)
     finally:
         part.unlink(missing_ok=True)

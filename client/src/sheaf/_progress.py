@@ -37,6 +37,16 @@ class ProgressBar:
             self._tenth = tenth
             self._write(words(progress) + "\n")
 
+    def say(self, text: str, fraction: float) -> None:
+        """Shows words and a share, for work that has no frames to count."""
+        line = f"{fraction:4.0%}  {text}"
+        if self._live:
+            width = self._width or shutil.get_terminal_size().columns
+            self._write("\r\x1b[K" + line[: width - 1])
+            self._drawn = True
+        else:
+            self._write(line + "\n")
+
     def close(self) -> None:
         """Ends the line."""
         if self._drawn:

@@ -9,6 +9,7 @@ from .._errors import (
     JobCancelled,
     JobFailed,
     NotFound,
+    RenderError,
     SceneError,
     SheafError,
     TooLarge,
@@ -39,6 +40,6 @@ _CODES: tuple[tuple[tuple[type[BaseException], ...], int], ...] = (
 
 def exit_code(error: BaseException) -> int:
     """The exit code of a failure; 6, reading, writing and the network, is the one worth another try."""
-    if isinstance(error, JobFailed):
+    if isinstance(error, (JobFailed, RenderError)):
         return error.exit_code if error.exit_code in (USAGE, INPUT, DEVICE, LIMIT, IO) else IO
     return next((code for types, code in _CODES if isinstance(error, types)), IO)

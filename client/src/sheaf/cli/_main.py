@@ -12,12 +12,12 @@ from typing import NoReturn
 
 from .._errors import SheafError
 from .._version import __version__
-from . import _camera, _jobs, _render
+from . import _camera, _jobs, _render, _study
 from ._exit import Terminated, UsageError, exit_code
 from ._report import Report
 
 # Each command is a module with `add(subparsers)`, which sets `run(arguments, report)` as its parsers' default.
-_COMMANDS = (_render, _jobs, _camera)
+_COMMANDS = (_render, _jobs, _camera, _study)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sheaf-client",
-        description="Renders glTF animations on a Sheaf service.",
+        description="Renders glTF animations on a Sheaf service, and measures the engine here.",
         epilog="Exit codes: 0 done; 2 wrong usage; 3 bad scene, camera path or settings; 4 no usable device; "
         "5 a limit was exceeded; 6 reading, writing or the network failed; 130, 143 interrupted.",
     )

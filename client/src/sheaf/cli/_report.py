@@ -40,6 +40,12 @@ class Report:
             eta_s=progress.eta_s,
         )
 
+    def step(self, text: str, progress: Progress) -> None:
+        """The next of many steps, in words."""
+        if self._bar:
+            self._bar.say(text, progress.fraction)
+        self._emit(event="progress", step=text, fraction=progress.fraction)
+
     def file(self, frame: int, path: Path) -> None:
         """A file is there."""
         self._files += 1
