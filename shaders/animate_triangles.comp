@@ -5,10 +5,13 @@
 // triangles of one instance.
 #define COMPUTE
 #include "common.glsl"
-BUFFER(ROLE_TRIANGLE_A, writeonly, vec3, triangle_a);
-BUFFER(ROLE_TRIANGLE_B, writeonly, vec3, triangle_b);
-BUFFER(ROLE_TRIANGLE_C, writeonly, vec3, triangle_c);
-BUFFER(ROLE_TRIANGLE_INSTANCE, writeonly, uint, triangle_instance);
+#include "rays.glsl"
+#include "memory.glsl"
+struct Triangle {
+  vec3 a, b, c;
+  uint instance;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Triangles { Triangle triangle[]; };
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_MATERIALS, readonly, Material, materials);
 BUFFER(ROLE_INDICES, readonly, uint, indices);
@@ -33,10 +36,10 @@ void main() {
   if (local >= i.triangle_count) return;
   uint first = i.first_index + 3u * local;
   uint t = i.first_triangle + local;
-  triangle_a[t] = world_position(i, indices[first]);
-  triangle_b[t] = world_position(i, indices[first + 1u]);
-  triangle_c[t] = world_position(i, indices[first + 2u]);
   uint flags = materials[i.material].flags;
-  triangle_instance[t] = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
-                         ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u);
+  uint word = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
+              ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u);
+  Triangles(frame.triangles_at).triangle[t] =
+      Triangle(world_position(i, indices[first]), world_position(i, indices[first + 1u]),
+               world_position(i, indices[first + 2u]), word);
 }

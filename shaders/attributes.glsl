@@ -23,7 +23,7 @@ vec4 base_color_at(Instance instance, Material material, uvec3 v, vec3 b, vec2 u
 
 // Base color with alpha at a candidate hit, before it is known to count.
 vec4 candidate_color(uint triangle, vec3 b) {
-  Instance instance = instances[instance_of(triangle)];
+  Instance instance = instances[instance_of(load_triangle(triangle))];
   uvec3 v = triangle_vertices(instance, triangle);
   return base_color_at(instance, materials[instance.material], v, b, interpolate_uv(instance.uv0, v, b),
                        interpolate_uv(instance.uv1, v, b));
@@ -31,6 +31,6 @@ vec4 candidate_color(uint triangle, vec3 b) {
 
 // An alpha-masked surface that is not there at this point.
 bool masked_out(uint triangle, vec3 b) {
-  Material material = materials[instances[instance_of(triangle)].material];
+  Material material = materials[instances[instance_of(load_triangle(triangle))].material];
   return (material.flags & MATERIAL_MASK) != 0u && candidate_color(triangle, b).a < material.alpha_cutoff;
 }

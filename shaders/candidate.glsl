@@ -23,15 +23,19 @@ struct Pending {
 const Pending NOTHING_PENDING = Pending(NO_INDEX, 0.0, vec3(0));
 
 // A nearer hit, or an equal one of a lower triangle, is taken; where an alpha mask has a say it is left pending.
-void consider_nearest(uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
-  TriangleHit h = intersect_scene_triangle(s, triangle, tmin, best.t);
+void consider_nearest_corners(Corners corners, uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
+  TriangleHit h = intersect_corners(s, corners, tmin, best.t);
   if (!h.hit || (h.t == best.t && triangle > best.triangle)) return;
-  if (MASKED && (triangle_instance[triangle] & TRIANGLE_MASKED) != 0u) {
+  if (MASKED && (corners.instance & TRIANGLE_MASKED) != 0u) {
     pending = Pending(triangle, h.t, h.barycentric);
     return;
   }
   best.t = h.t;
   best.triangle = triangle;
+}
+
+void consider_nearest(uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
+  consider_nearest_corners(load_triangle(triangle), triangle, s, tmin, best, pending);
 }
 
 void settle_nearest(inout Nearest best, inout Pending pending) {
@@ -57,14 +61,15 @@ ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STO
 // Optical depth of one crossing at t; false where nothing passes. A finite tmax: the ray comes from the light and ends at the
 // lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one left absorbs over t.
 bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 stops) {
-  Instance instance = instances[instance_of(triangle)];
+  Corners corners = load_triangle(triangle);
+  Instance instance = instances[instance_of(corners)];
   Material m = materials[instance.material];
   if ((m.flags & MATERIAL_NOT_OPAQUE) == 0u) return false;
   uvec3 v = triangle_vertices(instance, triangle);
   vec2 uv0 = interpolate_uv(instance.uv0, v, b), uv1 = interpolate_uv(instance.uv1, v, b);
   vec4 base = base_color_at(instance, m, v, b, uv0, uv1);
   if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
-  vec3 g = cross(triangle_b[triangle] - triangle_a[triangle], triangle_c[triangle] - triangle_a[triangle]);
+  vec3 g = cross(corners.b - corners.a, corners.c - corners.a);
   float cosine = dot(g, direction) / max(length(g), 1e-37) * instance.determinant_sign;
   vec3 passed = vec3(0);
   if ((m.flags & (MATERIAL_TRANSMISSIVE | MATERIAL_UNLIT)) == MATERIAL_TRANSMISSIVE) {
@@ -83,16 +88,21 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   return true;
 }
 
-void consider_shadow(uint triangle, Shear s, float tmin, float tmax, inout Shade shade, inout Pending pending) {
-  TriangleHit h = intersect_scene_triangle(s, triangle, tmin, tmax);
+void consider_shadow_corners(Corners corners, uint triangle, Shear s, float tmin, float tmax, inout Shade shade,
+                             inout Pending pending) {
+  TriangleHit h = intersect_corners(s, corners, tmin, tmax);
   if (!h.hit) return;
-  if (TRANSLUCENT && (triangle_instance[triangle] & (TRIANGLE_MASKED | TRIANGLE_TRANSLUCENT)) != 0u) {
+  if (TRANSLUCENT && (corners.instance & (TRIANGLE_MASKED | TRIANGLE_TRANSLUCENT)) != 0u) {
     pending = Pending(triangle, h.t, h.barycentric);
     return;
   }
   shade.blocked = true;
   shade.triangle = triangle;
   shade.t = h.t;
+}
+
+void consider_shadow(uint triangle, Shear s, float tmin, float tmax, inout Shade shade, inout Pending pending) {
+  consider_shadow_corners(load_triangle(triangle), triangle, s, tmin, tmax, shade, pending);
 }
 
 void settle_shadow(vec3 direction, float tmax, inout Shade shade, inout Pending pending) {

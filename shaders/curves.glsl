@@ -27,6 +27,21 @@ uint hilbert2(uvec2 p, uint bits) {
   return d;
 }
 
+// The cell at a place of that curve.
+uvec2 on_hilbert2(uint place, uint bits) {
+  uvec2 p = uvec2(0);
+  for (uint i = 0u; i < bits; ++i) {
+    uint s = 1u << i, digit = (place >> (2u * i)) & 3u;
+    uint rx = digit >> 1, ry = (digit ^ rx) & 1u;
+    if (ry == 0u) {
+      if (rx == 1u) p = (s - 1u) - p;
+      p = p.yx;
+    }
+    p += s * uvec2(rx, ry);
+  }
+  return p;
+}
+
 // Place on the 3D Hilbert curve: axes to transpose (Skilling, "Programming the Hilbert curve", AIP 707, 2004), then interleaved.
 uint hilbert3(uvec3 p, uint bits) {
   uint x[3] = uint[3](p.x, p.y, p.z);

@@ -212,8 +212,8 @@ vec3 absorbed(Parent p, Surface s, Material m, float t) {
 }
 
 void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
-  TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), triangle_a[triangle], triangle_b[triangle],
-                                       triangle_c[triangle], 0.0);
+  Corners corners = load_triangle(triangle);
+  TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
   Surface s = surface_at(triangle, at.barycentric, p.ray.direction);
   Material m = materials[s.material];
   if (VOLUMES) p.weight *= absorbed(p, s, m, t);

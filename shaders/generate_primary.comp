@@ -8,11 +8,24 @@
 #include "rays.glsl"
 #include "camera.glsl"
 #include "lists.glsl"
+#include "curves.glsl"
 BUFFER(ROLE_RAYS, writeonly, float, rays);
 BUFFER(ROLE_HITS, writeonly, uvec2, hits);
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_VISIBILITY, readonly, uvec2, visibility);
 layout(constant_id = 1) const bool RASTER = true;
+
+// Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
+// them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
+uvec2 pixel_of(uint i) {
+  const uint SIDE = 8u;
+  uint strip = i / (SIDE * frame.tile_width), in_strip = i % (SIDE * frame.tile_width);
+  uint height = min(SIDE, frame.tile_height - SIDE * strip);
+  uint block = in_strip / (SIDE * height), in_block = in_strip % (SIDE * height);
+  uint width = min(SIDE, frame.tile_width - SIDE * block);
+  uvec2 p = width == SIDE && height == SIDE ? on_hilbert2(in_block, 3u) : uvec2(in_block % width, in_block / width);
+  return uvec2(SIDE * block, SIDE * strip) + p;
+}
 
 void main() {
   uint i = global_index();
@@ -25,10 +38,12 @@ void main() {
     }
   }
   if (i >= count) return;
-  Ray ray = camera_ray(frame.tile_x + i % frame.tile_width, frame.tile_y + i / frame.tile_width);
+  uvec2 at = pixel_of(i);
+  uint pixel = at.y * frame.tile_width + at.x;
+  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y);
   STORE_RAY(rays, i, ray.origin, ray.direction, ray.tmin, ray.tmax, vec3(1));
-  RAYS(rays, RAY_PIXEL, i) = uintBitsToFloat(i);
+  RAYS(rays, RAY_PIXEL, i) = uintBitsToFloat(pixel);
   RAYS(rays, RAY_MEDIUM, i) = 0.0;
   RAYS(rays, RAY_COVERAGE, i) = 1.0;
-  hits[i] = RASTER ? visibility[i] : uvec2(NO_INDEX);
+  hits[i] = RASTER ? visibility[pixel] : uvec2(NO_INDEX);
 }

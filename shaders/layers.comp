@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The surface layers (--aov) of the camera's first hits: structure of arrays, word w of pixel i at w · pixels + i.
+// The surface layers (--aov) of the camera's first hits: structure of arrays, word w of a pixel at w · pixels + pixel.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -14,14 +14,14 @@ BUFFER(ROLE_LAYERS, writeonly, float, layers);
 void main() {
   uint i = global_index(), pixels = frame.tile_width * frame.tile_height;
   if (i >= pixels) return;
-  uint triangle = hits[i].x;
+  uint triangle = hits[i].x, pixel = floatBitsToUint(RAYS(rays, RAY_PIXEL, i));
   float words[LAYER_WORDS];
   for (uint w = 0u; w < LAYER_WORDS; ++w) words[w] = 0.0;
   words[LAYER_DEPTH] = INFINITY;
   if (triangle != NO_INDEX) {
     Ray ray = LOAD_RAY(rays, i);
-    TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), triangle_a[triangle], triangle_b[triangle],
-                                         triangle_c[triangle], 0.0);
+    Corners corners = load_triangle(triangle);
+    TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
     Surface s = surface_at(triangle, at.barycentric, ray.direction);
     words[LAYER_DEPTH] = dot(s.point - frame.eye, frame.forward);
     for (uint c = 0u; c < 3u; ++c) {
@@ -34,5 +34,5 @@ void main() {
     words[LAYER_OBJECT] = uintBitsToFloat(s.object);
     words[LAYER_MATERIAL] = uintBitsToFloat(materials[s.material].id);
   }
-  for (uint w = 0u; w < LAYER_WORDS; ++w) layers[w * pixels + i] = words[w];
+  for (uint w = 0u; w < LAYER_WORDS; ++w) layers[w * pixels + pixel] = words[w];
 }

@@ -5,16 +5,14 @@
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
-BUFFER(ROLE_TRIANGLE_A, readonly, vec3, triangle_a);
-BUFFER(ROLE_TRIANGLE_B, readonly, vec3, triangle_b);
-BUFFER(ROLE_TRIANGLE_C, readonly, vec3, triangle_c);
+#include "memory.glsl"
 BUFFER(ROLE_BOXES, writeonly, vec3, boxes);
 
 void main() {
   uint i = global_index();
   if (i >= frame.triangles) return;
-  vec3 a = triangle_a[i], b = triangle_b[i], c = triangle_c[i];
+  Corners v = load_triangle(i);
   // Twice box_pad: the driver's own slab test rounds too, and it must not lose a box that ours enters.
-  boxes[2u * i] = min(min(a, b), c) - 2.0 * frame.box_pad;
-  boxes[2u * i + 1u] = max(max(a, b), c) + 2.0 * frame.box_pad;
+  boxes[2u * i] = min(min(v.a, v.b), v.c) - 2.0 * frame.box_pad;
+  boxes[2u * i + 1u] = max(max(v.a, v.b), v.c) + 2.0 * frame.box_pad;
 }

@@ -6,10 +6,8 @@
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
+#include "memory.glsl"
 #include "ray_node.glsl"
-BUFFER(ROLE_TRIANGLE_A, readonly, vec3, triangle_a);
-BUFFER(ROLE_TRIANGLE_B, readonly, vec3, triangle_b);
-BUFFER(ROLE_TRIANGLE_C, readonly, vec3, triangle_c);
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_SPHERES, coherent, vec4, spheres);
 BUFFER(ROLE_MESH_SPHERES, coherent, vec4, mesh_spheres);
@@ -42,7 +40,8 @@ void main() {
   uint i = global_index();
   if (push.meshes == 0u) {
     if (i >= frame.triangles) return;
-    vec4 s = triangle_sphere(triangle_a[i], triangle_b[i], triangle_c[i]);
+    Corners v = load_triangle(i);
+    vec4 s = triangle_sphere(v.a, v.b, v.c);
     spheres[i] = padded(s.xyz, s.w);
     return;
   }
@@ -50,12 +49,15 @@ void main() {
   uint first = instances[i].first_triangle, last = first + instances[i].triangle_count;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint t = first; t < last; ++t) {
-    lo = min(lo, min(min(triangle_a[t], triangle_b[t]), triangle_c[t]));
-    hi = max(hi, max(max(triangle_a[t], triangle_b[t]), triangle_c[t]));
+    Corners v = load_triangle(t);
+    lo = min(lo, min(min(v.a, v.b), v.c));
+    hi = max(hi, max(max(v.a, v.b), v.c));
   }
   vec3 centre = 0.5 * lo + 0.5 * hi;
   float radius = 0.0;
-  for (uint t = first; t < last; ++t)
-    radius = max(radius, max(max(length(triangle_a[t] - centre), length(triangle_b[t] - centre)), length(triangle_c[t] - centre)));
+  for (uint t = first; t < last; ++t) {
+    Corners v = load_triangle(t);
+    radius = max(radius, max(max(length(v.a - centre), length(v.b - centre)), length(v.c - centre)));
+  }
   mesh_spheres[i] = padded(centre, radius);
 }

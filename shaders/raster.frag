@@ -15,8 +15,8 @@ layout(location = 0) flat in uint triangle;
 void main() {
   uvec2 at = uvec2(gl_FragCoord.xy);
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y);
-  TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), triangle_a[triangle], triangle_b[triangle],
-                                      triangle_c[triangle], 0.0);
+  Corners corners = load_triangle(triangle);
+  TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
   if (!(h.t >= ray.tmin && h.t <= ray.tmax)) return;
   uint64_t found = (uint64_t(floatBitsToUint(h.t)) << 32) | uint64_t(triangle);
   uint pixel = at.y * frame.tile_width + at.x;

@@ -4,15 +4,14 @@
 // The raster pass pulls world-space triangles; clip positions only decide coverage, depth comes from the fragment.
 #include "common.glsl"
 #include "rays.glsl"
-BUFFER(ROLE_TRIANGLE_A, readonly, vec3, triangle_a);
-BUFFER(ROLE_TRIANGLE_B, readonly, vec3, triangle_b);
-BUFFER(ROLE_TRIANGLE_C, readonly, vec3, triangle_c);
+#include "memory.glsl"
 layout(location = 0) flat out uint triangle;
 
 void main() {
   triangle = gl_VertexIndex / 3u;
   uint corner = gl_VertexIndex % 3u;
-  vec3 p = corner == 0u ? triangle_a[triangle] : corner == 1u ? triangle_b[triangle] : triangle_c[triangle];
+  Corners corners = load_triangle(triangle);
+  vec3 p = corner == 0u ? corners.a : corner == 1u ? corners.b : corners.c;
   vec3 v = p - frame.eye;
   float x = dot(v, frame.right) / dot(frame.right, frame.right);
   float y = dot(v, frame.up) / dot(frame.up, frame.up);

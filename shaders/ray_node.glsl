@@ -43,9 +43,18 @@ RayNode load_ray_node_words(float w0, float w1, float w2, float w3, float w4, fl
   load_ray_node_words(buffer[at], buffer[at + 1u], buffer[at + 2u], buffer[at + 3u], buffer[at + 4u], buffer[at + 5u], \
                       buffer[at + 6u], buffer[at + 7u], buffer[at + 8u])
 
+// A node as the test against many spheres wants it.
+struct Cone {
+  RayNode node;
+  float cosine, sine;
+};
+
+Cone cone_of(RayNode n) { return Cone(n, cos(n.angle), sin(n.angle)); }
+
 // Whether some ray of the node may meet the sphere (algorithm 6). w = |v × a|, not a root of a difference, which cancels.
 // The comparisons give way by SLACK of the lengths involved: three products and two sums a side, and sin, cos to 2^-21.
-bool node_meets_sphere(RayNode n, vec3 centre, float radius) {
+bool cone_meets_sphere(Cone cone, vec3 centre, float radius) {
+  RayNode n = cone.node;
   const float SLACK = 3.8146973e-6;  // 2^-18
   vec3 v = centre - n.centre;
   float distance = length(v);
@@ -56,8 +65,10 @@ bool node_meets_sphere(RayNode n, vec3 centre, float radius) {
   if (distance - reach > n.tmax) return false;
   if (!(n.angle < HALF_PI)) return true;
   float z = dot(v, n.axis), w = length(cross(v, n.axis));
-  float c = cos(n.angle), s = sin(n.angle);
+  float c = cone.cosine, s = cone.sine;
   if (z * c + w * s < -give) return false;      // the apex is the nearest point, and it is outside
   return !(w * c - z * s > reach);
 }
+
+bool node_meets_sphere(RayNode n, vec3 centre, float radius) { return cone_meets_sphere(cone_of(n), centre, radius); }
 #endif

@@ -22,10 +22,6 @@ using mat3 = glm::mat3;
 #define ROLE_FRAME 0
 #define ROLE_COUNTERS 1
 #define ROLE_ARGS 2
-#define ROLE_TRIANGLE_A 3
-#define ROLE_TRIANGLE_B 4
-#define ROLE_TRIANGLE_C 5
-#define ROLE_TRIANGLE_INSTANCE 6
 #define ROLE_INSTANCES 7
 #define ROLE_INDICES 8
 #define ROLE_POSITIONS 9
@@ -37,7 +33,6 @@ using mat3 = glm::mat3;
 #define ROLE_TEXTURES 15
 #define ROLE_TEXELS 16
 #define ROLE_LIGHTS 17
-#define ROLE_NODES 18
 #define ROLE_RAYS 19
 #define ROLE_HITS 20
 #define ROLE_ORDER 21
@@ -160,13 +155,24 @@ SHEAF_CONST LAYER_OBJECT = 12u;
 SHEAF_CONST LAYER_MATERIAL = 13u;
 SHEAF_CONST LAYER_WORDS = 14u;
 
-// Object hierarchy: 8-wide nodes, 56 words: lo.x[8] lo.y[8] lo.z[8] hi.x[8] hi.y[8] hi.z[8] child[8].
+// Triangles in world space, relative to the frame origin: corners a, b, c, then the word of instance and flags (below).
+SHEAF_CONST TRIANGLE_WORDS = 10u;
+SHEAF_CONST TRIANGLE_INSTANCE = 9u;
+
+// Object hierarchy: 8-wide nodes of 24 words. Children's boxes are bytes on a grid of the node's own (Ylitie, Karras, Laine,
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017), rounded outwards:
+// origin.xyz, (exponents of the grid's steps x, y, z and the children there are, a byte each),
+// lo.x[8] lo.y[8] lo.z[8] hi.x[8] hi.y[8] hi.z[8] as bytes, child[8].
 SHEAF_CONST WIDE = 8u;
-SHEAF_CONST NODE_WORDS = 56u;
-SHEAF_CONST NODE_CHILD = 48u;
+SHEAF_CONST LEAF_TRIANGLES = 4u;     // the most of a leaf
+SHEAF_CONST NODE_WORDS = 24u;
+SHEAF_CONST NODE_STEPS = 3u;
+SHEAF_CONST NODE_BOXES = 4u;
+SHEAF_CONST NODE_CHILD = 16u;
 SHEAF_CONST CHILD_EMPTY = 0xFFFFFFFFu;
 SHEAF_CONST CHILD_LEAF = 0x80000000u;  // bits 27..30 count − 1, bits 0..26 first triangle
-SHEAF_CONST STACK_SIZE = 128u;         // ≥ 7 · depth + 1 for two stacked trees of depth ≤ 9 each in practice; checked on the host
+SHEAF_CONST STACK_SIZE = 32u;         // one entry a level: the node's children still to visit; two trees of MAX_LEVELS each
+SHEAF_CONST MAX_NODES = 1u << 24;     // a stack entry holds a node and a mask of eight children
 
 // Nodes of the ray hierarchy: sphere of the origins (centre, radius), cone of the directions (axis, half-angle): the 8 floats
 // of R 4.3; and the largest far limit, so that shadow rays end at their light.
@@ -177,7 +183,7 @@ SHEAF_CONST MATERIAL_BLEND = 2u;
 SHEAF_CONST MATERIAL_UNLIT = 4u;
 SHEAF_CONST MATERIAL_VOLUME = 8u;
 SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
-// Words of ROLE_TRIANGLE_INSTANCE: the instance, and whether a hit needs a second look: bit 31 alpha mask, bit 30 lets light pass.
+// A triangle's last word: the instance, and whether a hit needs a second look: bit 31 alpha mask, bit 30 lets light pass.
 SHEAF_CONST TRIANGLE_MASKED = 0x80000000u;
 SHEAF_CONST TRIANGLE_TRANSLUCENT = 0x40000000u;
 SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x3FFFFFFFu;
@@ -280,6 +286,8 @@ struct Frame {      // per frame and sample
   uint tile_y;
   uint tile_width;
   uint tile_height;
+  uvec2 triangles_at;  // device addresses, low word first: see memory.glsl
+  uvec2 nodes_at;
 };
 
 struct Deform {     // one deforming instance's vertices

@@ -55,10 +55,11 @@ vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 
 }
 
 Surface surface_at(uint triangle, vec3 b, vec3 direction) {
-  Instance instance = instances[instance_of(triangle)];
+  Corners corners = load_triangle(triangle);
+  Instance instance = instances[instance_of(corners)];
   Material material = materials[instance.material];
   uvec3 v = triangle_vertices(instance, triangle);
-  vec3 v0 = triangle_a[triangle], v1 = triangle_b[triangle], v2 = triangle_c[triangle];
+  vec3 v0 = corners.a, v1 = corners.b, v2 = corners.c;
   Surface s;
   precise vec3 point = v0 * b.x + v1 * b.y + v2 * b.z;
   s.point = point;

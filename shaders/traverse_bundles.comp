@@ -2,11 +2,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Traverse and intersect for `hybrid`: one subgroup walks the object hierarchy with a bundle of rays. Lanes are a node's
-// children when boxes are tested, then rays when a leaf is: its box per ray, then its triangles. What a node or triangle costs
-// to load is shared by all rays of the bundle.
+// children when boxes are tested; at a leaf they are vectors of rays (a subgroup's worth each) against its box, then the rays of
+// the vectors that enter. Nodes and triangles are loaded once for all rays, a pair of words a lane.
 //
-// Exact: the bundle's slabs are interval arithmetic over the same operations as each ray's own (subtraction and
-// multiplication, monotone under rounding), so no box is skipped that some ray would have entered. The cone test is padded.
+// Exact: see beam.glsl; the cone test is padded. Control flow as in single_ray.glsl.
 #define COMPUTE
 #include "common.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -19,283 +18,241 @@
 #include "lists.glsl"
 #include "counting.glsl"
 #include "ray_node.glsl"
+#include "node.glsl"
+#include "beam.glsl"
 BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
-BUFFER(ROLE_NODES, readonly, float, nodes);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_WORK, readonly, uint, work);
 layout(constant_id = 1) const bool ANY_HIT = false;
-layout(constant_id = 10) const bool CONE = true;
+layout(constant_id = 10) const uint LANES = 8;    // of a subgroup, which is the workgroup
+layout(constant_id = 11) const uint VECTORS = 8;  // BUNDLE / LANES
 layout(push_constant) uniform Push { uint kind; } push;
 
-// The bundle's rays, lane after lane; everything a test needs, so that vectors of rays load consecutively.
-shared float r_ox[BUNDLE], r_oy[BUNDLE], r_oz[BUNDLE], r_ix[BUNDLE], r_iy[BUNDLE], r_iz[BUNDLE];
-shared float r_sx[BUNDLE], r_sy[BUNDLE], r_sz[BUNDLE], r_tmin[BUNDLE], r_t[BUNDLE];
-shared uint r_axis[BUNDLE], r_slot[BUNDLE], r_triangle[BUNDLE];
-shared float r_dx[BUNDLE], r_dy[BUNDLE], r_dz[BUNDLE], r_end[BUNDLE];  // direction; far limit, or t where blocked
-shared int r_stops[3 * BUNDLE];
-shared uint stack[STACK_SIZE];     // node · WIDE + child
-shared float entries[STACK_SIZE];
-shared float child_entries[WIDE];
-
-struct Beam {  // bounds of the bundle's rays
-  vec3 olo, ohi, ilo, ihi;
-  float tmin;
-};
+// A lane's ray of each vector.
+vec3 r_origin[VECTORS], r_inverse[VECTORS], r_shear[VECTORS];
+float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, −∞ once there is nothing more to find; r_end: far
+                                                      // limit of a shadow ray, or t where it is blocked
+uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
+shared int stops[3 * BUNDLE];
+Beam vector_beam;                                     // lane v: of vector v
+uint stack[STACK_SIZE];
+uint lane, ray_count, first_ray, octant;
+uint group = 0u, depth = 0u;                          // as in single_ray.glsl, the same in all lanes
+uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
 
 void sync() {
   subgroupMemoryBarrierShared();
   subgroupBarrier();
 }
 
-uint ray_count;
-uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
+#include "bundle_queue.glsl"
 
-Beam load_bundle(uint bundle) {
-  uint first = bundle * BUNDLE;
-  ray_count = min(BUNDLE, counters[COUNT_RAYS + push.kind] - first);
-  vec3 olo = vec3(INFINITY), ohi = vec3(-INFINITY), ilo = vec3(INFINITY), ihi = vec3(-INFINITY);
-  float tmin = INFINITY;
-  for (uint k = gl_LocalInvocationID.x; k < BUNDLE; k += gl_WorkGroupSize.x) {
-    uint slot = order[first + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes are never tested
+Extent extent_of(Extent mine) {
+  return Extent(subgroupMin(mine.olo), subgroupMax(mine.ohi), subgroupMin(mine.ilo), subgroupMax(mine.ihi), subgroupMin(mine.tmin));
+}
+
+Beam load_bundle() {
+  Extent own = Extent(vec3(INFINITY), vec3(-INFINITY), vec3(INFINITY), vec3(-INFINITY), INFINITY);
+  float own_far = -INFINITY;
+  for (uint v = 0u; v < VECTORS; ++v) {
+    uint k = v * LANES + lane;
+    uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
     Ray ray = LOAD_RAY(rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
-    r_ox[k] = ray.origin.x;
-    r_oy[k] = ray.origin.y;
-    r_oz[k] = ray.origin.z;
-    r_ix[k] = s.inverse.x;
-    r_iy[k] = s.inverse.y;
-    r_iz[k] = s.inverse.z;
-    r_sx[k] = s.sx;
-    r_sy[k] = s.sy;
-    r_sz[k] = s.sz;
-    r_axis[k] = s.axis;
-    r_tmin[k] = ray.tmin;
-    r_t[k] = k < ray_count ? ray.tmax : -INFINITY;
-    r_slot[k] = slot;
-    r_triangle[k] = NO_INDEX;
-    r_end[k] = ray.tmax;
-    if (ANY_HIT && TRANSLUCENT) {
-      r_dx[k] = ray.direction.x;
-      r_dy[k] = ray.direction.y;
-      r_dz[k] = ray.direction.z;
-      for (uint c = 0u; c < 3u; ++c) r_stops[c * BUNDLE + k] = 0;
+    r_origin[v] = s.origin;
+    r_inverse[v] = s.inverse;
+    r_shear[v] = vec3(s.sx, s.sy, s.sz);
+    r_axis[v] = s.axis;
+    r_tmin[v] = ray.tmin;
+    r_t[v] = k < ray_count ? ray.tmax : -INFINITY;
+    r_end[v] = ray.tmax;
+    r_slot[v] = slot;
+    r_triangle[v] = NO_INDEX;
+    if (ANY_HIT && TRANSLUCENT)
+      for (uint c = 0u; c < 3u; ++c) stops[c * BUNDLE + k] = 0;
+    Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
+    float far = subgroupMax(r_t[v]);
+    if (lane == v % LANES) {
+      own = e;  // with more vectors than lanes the last wins: then vector_beam is not used
+      own_far = far;
+      vector_beam = make_beam(e, far);
     }
-    olo = min(olo, ray.origin);
-    ohi = max(ohi, ray.origin);
-    ilo = min(ilo, s.inverse);
-    ihi = max(ihi, s.inverse);
-    tmin = min(tmin, ray.tmin);
+    if (VECTORS > LANES) {
+      own = Extent(min(own.olo, e.olo), max(own.ohi, e.ohi), min(own.ilo, e.ilo), max(own.ihi, e.ihi), min(own.tmin, e.tmin));
+      own_far = max(own_far, far);
+    }
   }
-  return Beam(subgroupMin(olo), subgroupMax(ohi), subgroupMin(ilo), subgroupMax(ihi), subgroupMin(tmin));
+  if (VECTORS <= LANES && lane >= VECTORS) vector_beam.farthest = -INFINITY;
+  return make_beam(extent_of(own), subgroupMax(own_far));
 }
 
-// Interval of one axis: least entry and greatest exit over all rays. Mixed signs bound nothing.
-vec2 axis_interval(float lo, float hi, float olo, float ohi, float ilo, float ihi) {
-  precise float lo_least = lo - ohi, lo_most = lo - olo, hi_least = hi - ohi, hi_most = hi - olo;
-  if (ilo > 0.0) {
-    precise float entry = lo_least * (lo_least >= 0.0 ? ilo : ihi);
-    precise float leave = hi_most * (hi_most >= 0.0 ? ihi : ilo);
-    return vec2(entry, leave);
+// Pairs of words that all lanes want, held a pair a lane, or two where there are but four lanes.
+struct Held {
+  uvec2 low, high;
+};
+
+
+#define HELD(h, k) (LANES < 8u && (k) >= 4u ? subgroupBroadcast((h).high, (k) & 3u) : subgroupBroadcast((h).low, (k)))
+
+struct Boxes {
+  Grid grid;
+  uvec2 lx, ly, lz, hx, hy, hz;
+};
+
+Boxes load_boxes(uint node) {
+  NodePairs words = node_pairs(node);
+  Held h = Held(unpack32(words.pair[lane & 7u]), LANES < 8u ? unpack32(words.pair[4u + (lane & 3u)]) : uvec2(0));
+  return Boxes(unpack_grid(HELD(h, 0u), HELD(h, 1u)), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u), HELD(h, 5u), HELD(h, 6u), HELD(h, 7u));
+}
+
+void child_box(Boxes b, uint c, out vec3 lo, out vec3 hi) {
+  lo = on_grid(b.grid, uvec3(byte_of(b.lx, c), byte_of(b.ly, c), byte_of(b.lz, c)));
+  hi = on_grid(b.grid, uvec3(byte_of(b.hx, c), byte_of(b.hy, c), byte_of(b.hz, c)));
+}
+
+Corners load_corners(uint triangle) {
+  TrianglePairs words = triangle_pairs(triangle);
+  Held h = Held(unpack32(words.pair[min(lane, 4u)]), LANES < 8u ? unpack32(words.pair[4]) : uvec2(0));
+  return unpack_triangle(HELD(h, 0u), HELD(h, 1u), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u));
+}
+
+// Children that some ray of the bundle may enter, a bit each.
+uint entered_children(Beam beam, Cone cone, uint node) {
+  Boxes boxes = load_boxes(node);
+  uint entered = 0u;
+  for (uint base = 0u; base < WIDE; base += LANES) {
+    uint c = base + lane;
+    vec3 lo, hi;
+    child_box(boxes, c & 7u, lo, hi);
+    bool there = c < WIDE && (boxes.grid.there & (1u << c)) != 0u;
+    if (there) ++node_tests;
+    bool enters = there && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
+    entered |= subgroupBallot(enters).x << base;
   }
-  if (ihi < 0.0) {
-    precise float entry = hi_most * (hi_most >= 0.0 ? ilo : ihi);
-    precise float leave = lo_least * (lo_least >= 0.0 ? ihi : ilo);
-    return vec2(entry, leave);
+  return entered;
+}
+
+void step_node(Beam beam, Cone cone, uint node) {
+  uint entered = in_visiting_order(entered_children(beam, cone, node) & 255u, octant);
+  if (entered == 0u) return;
+  if ((group & 255u) != 0u) {
+    stack[depth] = group;
+    ++depth;
   }
-  return vec2(-INFINITY, INFINITY);
+  group = (node << 8) | entered;
 }
 
-void child_bounds(uint node, uint c, out vec3 lo, out vec3 hi) {
-  uint at = node * NODE_WORDS + c;
-  lo = vec3(nodes[at], nodes[at + WIDE], nodes[at + 2u * WIDE]);
-  hi = vec3(nodes[at + 3u * WIDE], nodes[at + 4u * WIDE], nodes[at + 5u * WIDE]);
-}
-
-// Entry of the bundle into a child, INFINITY where none of its rays enters.
-float bundle_entry(Beam b, RayNode cone, uint node, uint c, float farthest) {
-  vec3 lo, hi;
-  child_bounds(node, c, lo, hi);
-  vec2 x = axis_interval(lo.x, hi.x, b.olo.x, b.ohi.x, b.ilo.x, b.ihi.x);
-  vec2 y = axis_interval(lo.y, hi.y, b.olo.y, b.ohi.y, b.ilo.y, b.ihi.y);
-  vec2 z = axis_interval(lo.z, hi.z, b.olo.z, b.ohi.z, b.ilo.z, b.ihi.z);
-  float entry = max(max(x.x, y.x), z.x), leave = min(min(x.y, y.y), z.y);
-  if (!(entry <= leave && leave >= b.tmin && entry <= farthest)) return INFINITY;
-  if (CONE && !node_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo))) return INFINITY;
-  return max(entry, b.tmin);
-}
-
-// Hits that a material may take back wait in a queue: asking materials takes long, so it is done for a full vector at a time.
-const uint QUEUE = 128u;
-shared uint q_ray[QUEUE], q_triangle[QUEUE];
-shared float q_t[QUEUE];
-uint queued = 0u;  // the same in all lanes
-
-bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
-
-Shear shear_of(uint k) {
-  return Shear(vec3(r_ox[k], r_oy[k], r_oz[k]), vec3(r_ix[k], r_iy[k], r_iz[k]), r_sx[k], r_sy[k], r_sz[k], r_axis[k]);
-}
-
-void settle_shadow_entry(uint e) {
-  uint k = q_ray[e];
-  TriangleHit h = intersect_scene_triangle(shear_of(k), q_triangle[e], r_tmin[k], r_end[k]);
-  ivec3 stops = ivec3(0);
-  if (crossing(q_triangle[e], h.barycentric, vec3(r_dx[k], r_dy[k], r_dz[k]), q_t[e], r_end[k], stops)) {
-    for (uint c = 0u; c < 3u; ++c) atomicAdd(r_stops[c * BUNDLE + k], stops[c]);
-  } else {
-    r_triangle[k] = q_triangle[e];
-    r_t[k] = -INFINITY;
+// The next child: a node or a leaf, and where it hangs (node · 8 + slot); CHILD_EMPTY at the end.
+uint next_child(out uint place) {
+  place = 0u;
+  if ((group & 255u) == 0u) {
+    if (depth == 0u) return CHILD_EMPTY;
+    --depth;
+    group = stack[depth];
   }
+  uint slot = uint(findLSB(group & 255u)) ^ octant, node = group >> 8;
+  group &= group - 1u;
+  place = node * WIDE + slot;
+  uvec2 pair = unpack32(node_pairs(node).pair[(NODE_CHILD + slot) / 2u]);
+  return (slot & 1u) != 0u ? pair.y : pair.x;
 }
 
-void settle_queue() {
-  if (queued == 0u) return;
-  sync();
-  for (uint e = gl_LocalInvocationID.x; e < queued; e += gl_WorkGroupSize.x) {
+void test_triangle(uint v, uint triangle, bool enters, Shear s) {
+  Corners corners = load_corners(triangle);
+  Pending pending = NOTHING_PENDING;
+  if (enters && r_t[v] > -INFINITY) {
+    ++triangle_tests;
     if (ANY_HIT) {
-      settle_shadow_entry(e);
-      continue;
-    }
-    uint k = q_ray[e];
-    TriangleHit h = intersect_scene_triangle(shear_of(k), q_triangle[e], r_tmin[k], INFINITY);
-    if (masked_out(q_triangle[e], h.barycentric)) q_triangle[e] = NO_INDEX;
-  }
-  sync();
-  if (!ANY_HIT)
-    for (uint e = 0u; e < queued; ++e) {  // one after the other: several may be of one ray
-      uint k = q_ray[e];
-      bool nearer = q_triangle[e] != NO_INDEX && (q_t[e] < r_t[k] || (q_t[e] == r_t[k] && q_triangle[e] < r_triangle[k]));
-      sync();
-      if (nearer && gl_LocalInvocationID.x == 0u) {
-        r_t[k] = q_t[e];
-        r_triangle[k] = q_triangle[e];
+      Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+      consider_shadow_corners(corners, triangle, s, r_tmin[v], r_t[v], shade, pending);
+      if (shade.blocked) {
+        r_triangle[v] = triangle;
+        r_end[v] = shade.t;
+        r_t[v] = -INFINITY;
       }
-      sync();
+    } else {
+      Nearest best = Nearest(r_t[v], r_triangle[v]);
+      consider_nearest_corners(corners, triangle, s, r_tmin[v], best, pending);
+      r_t[v] = best.t;
+      r_triangle[v] = best.triangle;
     }
-  queued = 0u;
+  }
+  if (asks_materials()) queue_pending(v, pending);
 }
 
-void queue_pending(uint k, Pending pending) {
-  uvec4 waiting = subgroupBallot(pending.triangle != NO_INDEX);
-  uint count = subgroupBallotBitCount(waiting);
-  if (pending.triangle != NO_INDEX) {
-    uint at = queued + subgroupBallotExclusiveBitCount(waiting);
-    q_ray[at] = k;
-    q_triangle[at] = pending.triangle;
-    q_t[at] = pending.t;
-  }
-  queued += count;
-  if (queued + gl_WorkGroupSize.x > QUEUE) settle_queue();
+void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
+  Shear s = Shear(r_origin[v], r_inverse[v], r_shear[v].x, r_shear[v].y, r_shear[v].z, r_axis[v]);
+  vec2 range = slab(s, lo, hi);
+  bool enters = range.x <= range.y && range.y >= r_tmin[v] && range.x <= r_t[v];
+  if (v * LANES + lane < ray_count) ++box_tests;
+  uint first = leaf & 0x07FFFFFFu, last = first + ((leaf >> 27) & 15u) + 1u;
+  if (!subgroupAny(enters)) last = first;
+  for (uint triangle = first; triangle < last; ++triangle) test_triangle(v, triangle, enters, s);
+  float far = subgroupMax(r_t[v]);
+  if (lane == v % LANES) vector_beam.farthest = far;
 }
 
-void test_vector(uint k, uint child, vec3 lo, vec3 hi) {
-  Shear s = shear_of(k);
-  float tmin = r_tmin[k];
-  vec2 range = slab(s.origin, s.inverse, lo, hi);
-  bool enters = range.x <= range.y && range.y >= tmin && range.x <= r_t[k];
-  if (k < ray_count) ++box_tests;
-  if (!subgroupAny(enters)) return;
-  uint first = child & 0x07FFFFFFu, count = ((child >> 27) & 15u) + 1u;
-  for (uint i = first; i < first + count; ++i) {
-    float t = r_t[k];
-    Pending pending = NOTHING_PENDING;
-    if (enters && t > -INFINITY) {
-      ++triangle_tests;
-      if (ANY_HIT) {
-        Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
-        consider_shadow(i, s, tmin, t, shade, pending);
-        if (shade.blocked) {
-          r_triangle[k] = i;
-          r_end[k] = shade.t;
-          r_t[k] = -INFINITY;  // nothing more to find
-        }
-      } else {
-        Nearest best = Nearest(t, r_triangle[k]);
-        consider_nearest(i, s, tmin, best, pending);
-        r_t[k] = best.t;
-        r_triangle[k] = best.triangle;
-      }
-    }
-    if (asks_materials()) queue_pending(k, pending);
+void test_leaf(uint leaf, uint place) {
+  Boxes boxes = load_boxes(place / WIDE);
+  vec3 lo, hi;
+  child_box(boxes, place % WIDE, lo, hi);
+  uint todo = VECTORS > LANES ? (1u << VECTORS) - 1u : subgroupBallot(beam_enters(vector_beam, lo, hi)).x;
+  while (todo != 0u) {
+    test_vector(uint(findLSB(todo)), leaf, lo, hi);
+    todo &= todo - 1u;
   }
 }
 
 float farthest_hit() {
-  float t = -INFINITY;
-  for (uint k = gl_LocalInvocationID.x; k < BUNDLE; k += gl_WorkGroupSize.x) t = max(t, r_t[k]);
-  return subgroupMax(t);
+  float far = -INFINITY;
+  if (VECTORS <= LANES) return subgroupMax(vector_beam.farthest);
+  for (uint v = 0u; v < VECTORS; ++v) far = max(far, r_t[v]);
+  return subgroupMax(far);
 }
 
-// Entered children go on the stack, the farthest first, so that the nearest is popped next.
-uint push_children(Beam beam, RayNode cone, uint node, float farthest, uint depth) {
-  for (uint c = gl_LocalInvocationID.x; c < WIDE; c += gl_WorkGroupSize.x) {
-    uint child = floatBitsToUint(nodes[node * NODE_WORDS + NODE_CHILD + c]);
-    float entry = INFINITY;
-    if (child != CHILD_EMPTY) {
-      entry = bundle_entry(beam, cone, node, c, farthest);
-      ++node_tests;
+void walk(Beam beam, Cone cone) {
+  uint current = 0u, place = 0u;
+  while (current != CHILD_EMPTY) {
+    while (current != CHILD_EMPTY && queue_has_room()) {
+      while ((current & CHILD_LEAF) == 0u) {
+        step_node(beam, cone, current);
+        current = next_child(place);
+      }
+      while ((current & CHILD_LEAF) != 0u && current != CHILD_EMPTY && queue_has_room()) {
+        test_leaf(current, place);
+        beam.farthest = farthest_hit();
+        current = next_child(place);
+        if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;  // every shadow ray is blocked
+      }
     }
-    child_entries[c] = entry;
+    if (asks_materials()) settle_queue();
   }
-  sync();
-  uint entered = 0u;
-  for (uint c = 0u; c < WIDE; ++c) entered += child_entries[c] < INFINITY ? 1u : 0u;
-  for (uint c = gl_LocalInvocationID.x; c < WIDE; c += gl_WorkGroupSize.x) {
-    float own = child_entries[c];
-    if (!(own < INFINITY)) continue;
-    uint place = 0u;
-    for (uint other = 0u; other < WIDE; ++other) {
-      float entry = child_entries[other];
-      if (entry < INFINITY && (entry > own || (entry == own && other > c))) ++place;
-    }
-    stack[depth + place] = node * WIDE + c;
-    entries[depth + place] = own;
-  }
-  sync();
-  return depth + entered;
 }
 
-void walk(Beam beam, RayNode cone) {
-  float farthest = farthest_hit();
-  uint depth = push_children(beam, cone, 0u, farthest, 0u);
-  while (depth > 0u) {
-    --depth;
-    uint from = stack[depth];
-    float entry = entries[depth];
-    if (!(entry <= farthest)) continue;
-    uint node = from / WIDE, c = from % WIDE;
-    uint child = floatBitsToUint(nodes[node * NODE_WORDS + NODE_CHILD + c]);
-    if ((child & CHILD_LEAF) == 0u) {
-      depth = push_children(beam, cone, child, farthest, depth);
-      continue;
-    }
-    vec3 lo, hi;
-    child_bounds(node, c, lo, hi);
-    for (uint k = gl_LocalInvocationID.x; k < BUNDLE; k += gl_WorkGroupSize.x) test_vector(k, child, lo, hi);
-    farthest = farthest_hit();
-    if (ANY_HIT && !(farthest > -INFINITY)) break;  // every ray is blocked
-  }
-  if (asks_materials()) settle_queue();
+void store(uint v) {
+  if (v * LANES + lane >= ray_count) return;
+  uint slot = r_slot[v];
+  hits[slot] = r_triangle[v] == NO_INDEX ? NO_HIT : pack_hit(ANY_HIT ? r_end[v] : r_t[v], r_triangle[v]);
+  if (ANY_HIT && TRANSLUCENT)
+    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = stops[c * BUNDLE + v * LANES + lane];
+  if (PIXEL_COUNTED)
+    count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / VECTORS);
 }
 
 void main() {
   if (global_group() >= counters[COUNT_TIGHT]) return;
-  uint bundles = (counters[COUNT_RAYS + push.kind] + BUNDLE - 1u) / BUNDLE;
-  uint bundle = work[bundles + global_group()];
-  Beam beam = load_bundle(bundle);
-  RayNode cone = LOAD_RAY_NODE(ray_nodes, bundle * RAY_NODE_WORDS);
+  uint rays_here = counters[COUNT_RAYS + push.kind];
+  uint bundle = work[(rays_here + BUNDLE - 1u) / BUNDLE + global_group()];
+  lane = gl_SubgroupInvocationID;
+  first_ray = bundle * BUNDLE;
+  ray_count = min(BUNDLE, rays_here - first_ray);
+  RayNode node = LOAD_RAY_NODE(ray_nodes, bundle * RAY_NODE_WORDS);
+  octant = octant_of(node.axis);
+  Beam beam = load_bundle();
+  walk(beam, cone_of(node));
   sync();
-  walk(beam, cone);
-  sync();
-  for (uint k = gl_LocalInvocationID.x; k < ray_count; k += gl_WorkGroupSize.x) {
-    uint slot = r_slot[k];
-    hits[slot] = r_triangle[k] == NO_INDEX ? NO_HIT : pack_hit(ANY_HIT ? r_end[k] : r_t[k], r_triangle[k]);
-    if (ANY_HIT && TRANSLUCENT)
-      for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = r_stops[c * BUNDLE + k];
-    if (PIXEL_COUNTED)
-      count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / max(ray_count / gl_WorkGroupSize.x, 1u));
-  }
+  for (uint v = 0u; v < VECTORS; ++v) store(v);
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
   count_tests(push.kind, STAT_RAY_BOX, box_tests);

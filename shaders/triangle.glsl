@@ -45,12 +45,22 @@ Shear make_shear(vec3 origin, vec3 direction) {
   return s;
 }
 
+// The greatest and least of three numbers that are not NaN (the built-in functions also see to those).
+float greatest(vec3 v) {
+  float xy = v.x > v.y ? v.x : v.y;
+  return xy > v.z ? xy : v.z;
+}
+float least(vec3 v) {
+  float xy = v.x < v.y ? v.x : v.y;
+  return xy < v.z ? xy : v.z;
+}
+
 // Entry and exit along the ray of a box (already padded). Hit where x <= y.
-vec2 slab(vec3 origin, vec3 inverse, vec3 lo, vec3 hi) {
-  precise vec3 a = (lo - origin) * inverse;
-  precise vec3 b = (hi - origin) * inverse;
-  vec3 n = min(a, b), f = max(a, b);
-  return vec2(max(max(n.x, n.y), n.z), min(min(f.x, f.y), f.z));
+vec2 slab(Shear s, vec3 lo, vec3 hi) {
+  bvec3 backwards = lessThan(s.inverse, vec3(0));
+  precise vec3 entry = (mix(lo, hi, backwards) - s.origin) * s.inverse;
+  precise vec3 leave = (mix(hi, lo, backwards) - s.origin) * s.inverse;
+  return vec2(greatest(entry), least(leave));
 }
 
 // Exact product p + e = a·b without a fused multiply (Dekker 1971, Veltkamp splitting at 12 bits).
@@ -113,8 +123,9 @@ TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, fl
   precise float t = (e.x * z.x + e.y * z.y + e.z * z.z) / det;
   precise vec3 lo = min(min(v0, v1), v2) - pad;
   precise vec3 hi = max(max(v0, v1), v2) + pad;
-  vec2 range = slab(s.origin, s.inverse, lo, hi);
-  t = clamp(t, range.x, range.y);
+  vec2 range = slab(s, lo, hi);
+  t = t < range.x ? range.x : t;
+  t = t > range.y ? range.y : t;
   result.hit = range.x <= range.y && t >= tmin && t <= tmax;  // false for a NaN
   result.t = t;
   precise vec3 weights = e / det;

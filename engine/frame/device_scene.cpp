@@ -7,11 +7,13 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "hierarchy/slot_order.hpp"
 
 namespace sheaf {
 namespace {
 
 constexpr std::uint32_t max_lights = 4096;
+constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
 template <typename T>
 bool store(T& place, const T& value) {  // true where the value changed
@@ -69,17 +71,19 @@ DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& 
   joints_ = upload(device, recorder, "joints", layout_.joints);
   morphs_ = upload(device, recorder, "morph targets", layout_.morphs);
   using Kind = Buffer::Kind;
-  for (auto& corner : corners_) corner = Buffer(device, "triangles", layout_.triangles * sizeof(glm::vec3));
-  triangle_instance_ = Buffer(device, "triangle instances", layout_.triangles * 4);
+  triangles_ = Buffer(device, "triangles", layout_.triangles * gpu::TRIANGLE_WORDS * 4, Kind::device, by_address);
   instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload);
   dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3));
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
   weights_ = Buffer(device, "morph weights", std::uint64_t{layout_.morph_weights} * 4, Kind::upload);
   if (plan.object_hierarchy) {
+    if (layout_.node_children.size() / wide > gpu::MAX_NODES)
+      throw limit_error(scene.path, std::to_string(layout_.triangles) + " triangles need more than " +
+                                        std::to_string(gpu::MAX_NODES) + " nodes of the object hierarchy");
     std::vector<std::uint32_t> words(layout_.node_children.size() / wide * gpu::NODE_WORDS);
     for (std::size_t n = 0; n < layout_.node_children.size() / wide; ++n)
       std::copy_n(&layout_.node_children[n * wide], wide, &words[n * gpu::NODE_WORDS + gpu::NODE_CHILD]);
-    nodes_ = upload(device, recorder, "object hierarchy", words);
+    nodes_ = upload(device, recorder, "object hierarchy", words, by_address);
     refit_work_ = Buffer(device, "refit list", layout_.node_children.size() / wide * 4, Kind::upload);
     top_staging_ = Buffer(device, "top level", std::uint64_t{layout_.top_nodes} * gpu::NODE_WORDS * 4, Kind::upload);
   }
@@ -110,10 +114,6 @@ void DeviceScene::bind(Recorder& r) const {
   r.bind(ROLE_MATERIALS, materials_);
   r.bind(ROLE_TEXTURES, textures_);
   r.bind(ROLE_TEXELS, texels_);
-  r.bind(ROLE_TRIANGLE_A, corners_[0]);
-  r.bind(ROLE_TRIANGLE_B, corners_[1]);
-  r.bind(ROLE_TRIANGLE_C, corners_[2]);
-  r.bind(ROLE_TRIANGLE_INSTANCE, triangle_instance_);
   r.bind(ROLE_INSTANCES, instances_);
   r.bind(ROLE_LIGHTS, lights_);
   r.bind(ROLE_DYNAMIC, dynamic_);
@@ -122,7 +122,14 @@ void DeviceScene::bind(Recorder& r) const {
   r.bind(ROLE_MORPHS, morphs_);
   r.bind(ROLE_SCAN_IN, matrices_);
   r.bind(ROLE_SCAN_OUT, weights_);
-  if (nodes_) r.bind(ROLE_NODES, nodes_);
+}
+
+void DeviceScene::set_addresses(gpu::Frame& frame) const {
+  auto words = [](vk::DeviceAddress at) {
+    return glm::uvec2(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U));
+  };
+  frame.triangles_at = words(triangles_.address());
+  if (nodes_) frame.nodes_at = words(nodes_.address());
 }
 
 void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
@@ -232,7 +239,8 @@ void DeviceScene::choose_pad(const CameraView& camera) {
 void DeviceScene::build_top_level(Recorder& recorder, std::vector<std::vector<std::uint32_t>>& heights) {
   HierarchyOptions options;
   options.leaf_size = 1;
-  const auto tree = build_object_hierarchy(boxes_, options);
+  auto tree = build_object_hierarchy(boxes_, options);
+  for (auto& node : tree.nodes) order_slots(node);
   const auto words = top_staging_.view<std::uint32_t>();
   std::fill(words.begin(), words.end(), 0U);
   const std::size_t above = layout_.refit_by_height.size();

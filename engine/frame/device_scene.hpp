@@ -38,7 +38,9 @@ class DeviceScene {
   [[nodiscard]] const Buffer& triangle_work() const { return triangle_work_; }
   [[nodiscard]] const Buffer& vertex_work() const { return vertex_work_; }
   [[nodiscard]] const Buffer& refit_work() const { return refit_work_; }
-  [[nodiscard]] const Buffer& triangle_corner(std::uint32_t k) const { return corners_[k]; }
+  [[nodiscard]] const Buffer& triangle_words() const { return triangles_; }
+  /// What shaders read by address (memory.glsl), set in the frame's block.
+  void set_addresses(gpu::Frame& frame) const;
   [[nodiscard]] const Buffer& deforms() const { return deforms_; }
   [[nodiscard]] const std::vector<Box>& instance_boxes() const { return boxes_; }
 
@@ -55,7 +57,7 @@ class DeviceScene {
   const Plan& plan_;
   SceneLayout layout_;
   Buffer indices_, positions_, normals_, tangents_, uvs_, colors_, materials_, textures_, texels_;
-  Buffer corners_[3], triangle_instance_, instances_, lights_, nodes_, dynamic_;
+  Buffer triangles_, instances_, lights_, nodes_, dynamic_;
   Buffer deforms_, joints_, morphs_, matrices_, weights_;
   Buffer triangle_work_, vertex_work_, refit_work_, top_staging_;
   std::vector<Box> boxes_;  // an instance: relative to the origin, near enough to build the top level
@@ -69,8 +71,9 @@ class DeviceScene {
 
 /// Uploads through a staging buffer and waits; an empty span gives a buffer of one word.
 template <typename T>
-[[nodiscard]] Buffer upload(const Device& device, Recorder& recorder, const char* name, const std::vector<T>& data) {
-  Buffer target(device, name, data.size() * sizeof(T), Buffer::Kind::device);
+[[nodiscard]] Buffer upload(const Device& device, Recorder& recorder, const char* name, const std::vector<T>& data,
+                            vk::BufferUsageFlags extra = {}) {
+  Buffer target(device, name, data.size() * sizeof(T), Buffer::Kind::device, extra);
   if (data.empty()) return target;
   const Buffer staging(device, name, data.size() * sizeof(T), Buffer::Kind::upload);
   std::memcpy(staging.mapped(), data.data(), data.size() * sizeof(T));

@@ -9,7 +9,7 @@ namespace sheaf {
 ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
-  corners_ = Buffer(device, "dump", std::uint64_t{scene.triangles()} * 12, Kind::readback);
+  triangles_ = Buffer(device, "dump", scene.triangle_words().bytes(), Kind::readback);
   rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_WORDS * 4, Kind::readback);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
@@ -19,13 +19,11 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
 void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
   const std::size_t count = scene_.triangles();
   host_corners_.assign(count * 9, 0);
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    recorder.copy(scene_.triangle_corner(k), corners_, count * 12);
-    recorder.submit_and_wait();
-    const auto from = corners_.view<float>();
-    for (std::size_t t = 0; t < count; ++t)
-      for (std::size_t c = 0; c < 3; ++c) host_corners_[t * 9 + k * 3 + c] = from[t * 3 + c];
-  }
+  recorder.copy(scene_.triangle_words(), triangles_, scene_.triangle_words().bytes());
+  recorder.submit_and_wait();
+  const auto from = triangles_.view<float>();
+  for (std::size_t t = 0; t < count; ++t)
+    for (std::size_t c = 0; c < 9; ++c) host_corners_[t * 9 + c] = from[t * gpu::TRIANGLE_WORDS + c];
   writer.triangles(host_corners_, scene_.origin());
 }
 

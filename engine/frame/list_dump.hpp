@@ -23,7 +23,7 @@ class ListDump {
 
   const DeviceScene& scene_;
   const RayMemory& memory_;
-  Buffer corners_, rays_, hits_, order_, counters_;
+  Buffer triangles_, rays_, hits_, order_, counters_;
   std::vector<float> host_corners_;  // 9 a triangle
 };
 

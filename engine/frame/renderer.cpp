@@ -82,6 +82,7 @@ void Renderer::set_frame(const CameraView& camera, std::uint32_t sample, const T
   f.tile_y = tile.y;
   f.tile_width = tile.width;
   f.tile_height = tile.height;
+  scene_.set_addresses(f);
   recorder_.update(memory_.frame, &f, sizeof(f));
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "frame/material_layout.hpp"
+#include "hierarchy/slot_order.hpp"
 
 namespace sheaf {
 namespace {
@@ -72,7 +73,10 @@ void place_mesh(SceneLayout& layout, const Mesh& mesh, MeshPlace& place) {
   std::vector<Box> boxes;
   boxes.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) boxes.push_back(triangle_box(mesh, t));
-  place.hierarchy = build_object_hierarchy(boxes);
+  HierarchyOptions options;
+  options.leaf_size = gpu::LEAF_TRIANGLES;
+  place.hierarchy = build_object_hierarchy(boxes, options);
+  for (auto& node : place.hierarchy.nodes) order_slots(node);
   auto& p = place.place;
   p.first_index = static_cast<std::uint32_t>(layout.indices.size());
   p.first_vertex = static_cast<std::uint32_t>(layout.positions.size());

@@ -13,7 +13,7 @@ void Objects::record(Recorder& recorder, const DeviceScene& scene, const Motion&
   recorder.bind(ROLE_WORK, scene.refit_work());
   for (const auto& [first, count] : motion.refit) {
     const struct { std::uint32_t first, count; } push{first, count};
-    recorder.dispatch(refit_, push, (std::uint64_t{count} * gpu::WIDE + gpu::GROUP - 1) / gpu::GROUP);
+    recorder.dispatch(refit_, push, (std::uint64_t{count} + gpu::GROUP - 1) / gpu::GROUP);
   }
 }
 

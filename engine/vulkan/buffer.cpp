@@ -14,7 +14,8 @@ Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t byte
   using Usage = vk::BufferUsageFlagBits;
   using Property = vk::MemoryPropertyFlagBits;
   const auto usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst | Usage::eIndirectBuffer | extra;
-  if (bytes_ > device.limits().storage_range)
+  const bool by_address = static_cast<bool>(extra & Usage::eShaderDeviceAddress);
+  if (bytes_ > device.limits().storage_range && !by_address)
     throw limit_error(name, std::to_string(bytes_) + " bytes exceed the device's largest storage buffer (" +
                                 std::to_string(device.limits().storage_range) + ")");
   try {
@@ -25,7 +26,7 @@ Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t byte
     if (kind == Kind::readback) wanted = Property::eHostVisible | Property::eHostCoherent;
     vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
     vk::MemoryAllocateInfo info(needs.size, device.memory_type(needs.memoryTypeBits, wanted));
-    if (extra & Usage::eShaderDeviceAddress) info.pNext = &flags;
+    if (by_address) info.pNext = &flags;
     memory_ = vk::raii::DeviceMemory(device.logical(), info);
     buffer_.bindMemory(*memory_, 0);
     allocated_ = needs.size;

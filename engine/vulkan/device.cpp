@@ -83,6 +83,7 @@ void check_requirements(const vk::raii::PhysicalDevice& physical,
   need(core.vertexPipelineStoresAndAtomics != VK_FALSE && core.fragmentStoresAndAtomics != VK_FALSE,
        "storage buffers in the raster pipeline");
   need(twelve.scalarBlockLayout != VK_FALSE, "scalarBlockLayout");
+  need(twelve.bufferDeviceAddress != VK_FALSE, "bufferDeviceAddress");
   need(twelve.shaderBufferInt64Atomics != VK_FALSE, "shaderBufferInt64Atomics");
   need(has_extension(extensions, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME), "VK_KHR_push_descriptor");
   need(compute_graphics_family(physical) != VK_QUEUE_FAMILY_IGNORED,
@@ -208,8 +209,7 @@ Device::Device(const std::string& selector) {
   vk::PhysicalDeviceFeatures core;
   core.shaderInt64 = core.vertexPipelineStoresAndAtomics = core.fragmentStoresAndAtomics = VK_TRUE;
   vk::PhysicalDeviceVulkan12Features twelve;
-  twelve.scalarBlockLayout = twelve.shaderBufferInt64Atomics = VK_TRUE;
-  twelve.bufferDeviceAddress = limits_.ray_query;
+  twelve.scalarBlockLayout = twelve.shaderBufferInt64Atomics = twelve.bufferDeviceAddress = VK_TRUE;
   vk::PhysicalDeviceAccelerationStructureFeaturesKHR structures;
   vk::PhysicalDeviceRayQueryFeaturesKHR query;
   if (limits_.ray_query) {

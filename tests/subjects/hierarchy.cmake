@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: MIT
 sheaf_test(object_hierarchy_test sheaf_hierarchy)
+sheaf_test(slot_order_test sheaf_hierarchy)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bounds of objects: spheres round triangles and instances, boxes of the object hierarchy after a refit.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "device_fixture.hpp"
@@ -73,32 +74,44 @@ std::vector<Soup> soups() {
   return all;
 }
 
+/// Read by address, not by a descriptor.
+template <typename T>
+Buffer addressed(const std::vector<T>& values) {
+  Buffer buffer(device(), "test input", values.size() * sizeof(T), Buffer::Kind::upload,
+                vk::BufferUsageFlagBits::eShaderDeviceAddress);
+  if (!values.empty()) std::memcpy(buffer.mapped(), values.data(), values.size() * sizeof(T));
+  return buffer;
+}
+
+glm::uvec2 words_of(vk::DeviceAddress at) {
+  return {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U)};
+}
+
 class OnDevice {
  public:
-  OnDevice(const Triangles& triangles, const std::vector<gpu::Instance>& instances) : recorder_(device()) {
-    std::vector<glm::vec3> corners[3];
+  OnDevice(const Triangles& triangles, const std::vector<gpu::Instance>& instances, const Buffer* nodes = nullptr)
+      : recorder_(device()) {
+    std::vector<float> words;
     for (const auto& t : triangles) {
-      corners[0].push_back(t.a);
-      corners[1].push_back(t.b);
-      corners[2].push_back(t.c);
+      for (const auto& p : {t.a, t.b, t.c}) words.insert(words.end(), {p.x, p.y, p.z});
+      words.push_back(0);
     }
+    triangles_ = addressed(words);
     gpu::Frame frame{};
+    frame.triangles_at = words_of(triangles_.address());
+    if (nodes != nullptr) frame.nodes_at = words_of(nodes->address());
     frame.triangles = static_cast<std::uint32_t>(triangles.size());
     frame.instances = static_cast<std::uint32_t>(instances.size());
     frame.box_pad = pad_of(triangles);
     frame_ = buffer_of(std::vector{frame});
     instances_ = buffer_of(instances);
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      corners_[k] = buffer_of(corners[k]);
-      recorder_.bind(ROLE_TRIANGLE_A + k, corners_[k]);
-    }
     recorder_.bind(ROLE_FRAME, frame_);
     recorder_.bind(ROLE_INSTANCES, instances_);
   }
   Recorder& recorder() { return recorder_; }
 
  private:
-  Buffer frame_, instances_, corners_[3];
+  Buffer frame_, instances_, triangles_;
   Recorder recorder_;
 };
 
@@ -176,33 +189,63 @@ void merge(Box& into, const Box& box) {
   into.hi = glm::max(into.hi, box.hi);
 }
 
-/// What a child's box must be, bit for bit: its triangles' box, widened by box_pad once.
-Box expected_box(const ObjectHierarchy& tree, std::uint32_t child, const Triangles& triangles, float pad) {
+/// A child's box as the shaders decode it, and the steps of its grid.
+struct Decoded {
+  Box box;
+  glm::vec3 step;
+  bool there;
+};
+
+Decoded decode(const std::uint32_t* node, std::uint32_t c) {
+  Decoded d;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto origin = std::bit_cast<float>(node[axis]);
+    d.step[axis] = std::bit_cast<float>((node[gpu::NODE_STEPS] >> (8 * axis) & 255U) << 23U);
+    auto at = [&](std::uint32_t first) {
+      const std::uint32_t byte = node[first + 2 * axis + c / 4] >> (8 * (c & 3U)) & 255U;
+      return origin + static_cast<float>(byte) * d.step[axis];
+    };
+    d.box.lo[axis] = at(gpu::NODE_BOXES);
+    d.box.hi[axis] = at(gpu::NODE_BOXES + 6);
+  }
+  d.there = (node[gpu::NODE_STEPS] >> (24 + c) & 1U) != 0;
+  return d;
+}
+
+/// What a child's box must hold: its triangles' box, widened by box_pad once, or its node's decoded boxes.
+Box held_box(const ObjectHierarchy& tree, const std::vector<std::uint32_t>& words, std::uint32_t child,
+             const Triangles& triangles, float pad) {
   Box box{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
   if (is_leaf(child)) {
     for (std::uint32_t i = 0; i < leaf_count(child); ++i) merge(box, box_of(triangles[leaf_first(child) + i]));
     return {box.lo - pad, box.hi + pad};
   }
-  for (const auto below : tree.nodes[child].child)
-    if (below != empty_child) merge(box, expected_box(tree, below, triangles, pad));
+  for (std::uint32_t c = 0; c < wide; ++c)
+    if (tree.nodes[child].child[c] != empty_child) merge(box, decode(&words[child * gpu::NODE_WORDS], c).box);
   return box;
 }
 
-void expect_refitted(const ObjectHierarchy& tree, const std::vector<float>& words, const Triangles& triangles) {
+// Containment must be exact; a side may lie one step further out, and two where the addition rounded.
+void expect_refitted(const ObjectHierarchy& tree, const std::vector<std::uint32_t>& words, const Triangles& triangles) {
   const float pad = pad_of(triangles);
   for (std::size_t n = 0; n < tree.nodes.size(); ++n)
     for (std::uint32_t c = 0; c < wide; ++c) {
-      const float* at = &words[n * gpu::NODE_WORDS + c];
-      const Box got{{at[0], at[wide], at[2 * wide]}, {at[3 * wide], at[4 * wide], at[5 * wide]}};
+      const Decoded got = decode(&words[n * gpu::NODE_WORDS], c);
       const auto child = tree.nodes[n].child[c];
-      const Box expected = child == empty_child ? Box{glm::vec3(INFINITY), glm::vec3(-INFINITY)}
-                                                : expected_box(tree, child, triangles, pad);
-      ASSERT_EQ(got.lo, expected.lo) << "node " << n << ", child " << c;
-      ASSERT_EQ(got.hi, expected.hi) << "node " << n << ", child " << c;
+      ASSERT_EQ(got.there, child != empty_child) << "node " << n << ", child " << c;
+      if (!got.there) continue;
+      const Box held = held_box(tree, words, child, triangles, pad);
+      for (int axis = 0; axis < 3; ++axis) {
+        const float rounding = 4 * pad, step = 2 * got.step[axis] + rounding;
+        ASSERT_LE(got.box.lo[axis], held.lo[axis]) << "node " << n << ", child " << c;
+        ASSERT_GE(got.box.hi[axis], held.hi[axis]) << "node " << n << ", child " << c;
+        ASSERT_GE(got.box.lo[axis], held.lo[axis] - step) << "node " << n << ", child " << c;
+        ASSERT_LE(got.box.hi[axis], held.hi[axis] + step) << "node " << n << ", child " << c;
+      }
     }
 }
 
-std::vector<float> refit(const Kernel& kernel, const ObjectHierarchy& tree, const Triangles& triangles) {
+std::vector<std::uint32_t> refit(const Kernel& kernel, const ObjectHierarchy& tree, const Triangles& triangles) {
   std::vector<std::uint32_t> words(tree.nodes.size() * gpu::NODE_WORDS,
                                    0x7FC00000U);  // NaN: what was there must not matter
   for (std::size_t n = 0; n < tree.nodes.size(); ++n)
@@ -212,17 +255,16 @@ std::vector<float> refit(const Kernel& kernel, const ObjectHierarchy& tree, cons
   for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) heights[tree.height[n]].push_back(n);
   std::vector<std::uint32_t> list;
   for (const auto& nodes : heights) list.insert(list.end(), nodes.begin(), nodes.end());
-  OnDevice scene(triangles, {});
-  const Buffer nodes = buffer_of(words), work = buffer_of(list);
-  scene.recorder().bind(ROLE_NODES, nodes);
+  const Buffer nodes = addressed(words), work = buffer_of(list);
+  OnDevice scene(triangles, {}, &nodes);
   scene.recorder().bind(ROLE_WORK, work);
   std::uint32_t first = 0;
   for (const auto& level : heights) {
     const struct { std::uint32_t first, count; } push{first, static_cast<std::uint32_t>(level.size())};
-    scene.recorder().dispatch(kernel, push, blocks_of(level.size() * wide, gpu::GROUP));
+    scene.recorder().dispatch(kernel, push, blocks_of(level.size(), gpu::GROUP));
     first += push.count;
   }
-  return read<float>(scene.recorder(), nodes, words.size());
+  return read<std::uint32_t>(scene.recorder(), nodes, words.size());
 }
 
 TEST(DeviceRefit, BoxesAreThoseOfTheirTriangles) {

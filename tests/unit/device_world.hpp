@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 
 #include "device_fixture.hpp"
 #include "scene_builder.hpp"
@@ -60,10 +61,9 @@ class DeviceWorld {
   /// As the device has them, in its order: the numbers that hits name.
   std::vector<Corners> triangles() {
     const std::uint32_t n = scene_.triangles();
-    std::vector<glm::vec3> corner[3];
-    for (std::uint32_t k = 0; k < 3; ++k) corner[k] = read<glm::vec3>(recorder_, scene_.triangle_corner(k), n);
+    const auto words = read<float>(recorder_, scene_.triangle_words(), std::size_t{n} * gpu::TRIANGLE_WORDS);
     std::vector<Corners> result(n);
-    for (std::uint32_t t = 0; t < n; ++t) result[t] = {corner[0][t], corner[1][t], corner[2][t]};
+    for (std::uint32_t t = 0; t < n; ++t) std::memcpy(&result[t], &words[t * gpu::TRIANGLE_WORDS], sizeof(Corners));
     return result;
   }
 
@@ -115,6 +115,7 @@ class DeviceWorld {
     frame.triangles = scene_.triangles();
     frame.instances = static_cast<std::uint32_t>(scene_.layout().instances.size());
     frame.box_pad = scene_.box_pad();
+    scene_.set_addresses(frame);
     recorder_.update(memory_.frame, &frame, sizeof(frame));
     scene_.bind(recorder_);
     recorder_.bind(ROLE_FRAME, memory_.frame);

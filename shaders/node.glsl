@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Nodes of the object hierarchy: eight boxes on a grid of the node's own (shared.h). Decoding is monotone, and what encodes
+// (objects_refit) rounds outwards until the decoded box holds the true one: the containment that triangle.glsl relies on.
+#include "memory.glsl"
+
+struct Grid {
+  vec3 origin;
+  vec3 step;   // powers of two
+  uint there;  // a bit a child
+};
+
+Grid unpack_grid(uvec2 p0, uvec2 p1) {
+  return Grid(uintBitsToFloat(uvec3(p0, p1.x)), uintBitsToFloat(uvec3(p1.y & 255u, (p1.y >> 8) & 255u, (p1.y >> 16) & 255u) << 23),
+              p1.y >> 24);
+}
+
+vec3 on_grid(Grid g, uvec3 place) {
+  precise vec3 p = g.origin + vec3(ivec3(place)) * g.step;
+  return p;
+}
+
+// The byte of child c of an axis' eight.
+uint byte_of(uvec2 bytes, uint c) { return ((c < 4u ? bytes.x : bytes.y) >> (8u * (c & 3u))) & 255u; }
+
+uint octant_of(vec3 direction) { return (direction.x < 0.0 ? 1u : 0u) | (direction.y < 0.0 ? 2u : 0u) | (direction.z < 0.0 ? 4u : 0u); }
+
+// Children of a node stand in the slot of the octant they lie in (slot_order.hpp): visited in the order slot ^ octant they come
+// roughly front to back. A mask of slots in that order:
+uint in_visiting_order(uint mask, uint octant) {
+  if ((octant & 1u) != 0u) mask = ((mask & 0x55u) << 1) | ((mask >> 1) & 0x55u);
+  if ((octant & 2u) != 0u) mask = ((mask & 0x33u) << 2) | ((mask >> 2) & 0x33u);
+  if ((octant & 4u) != 0u) mask = ((mask & 0x0Fu) << 4) | (mask >> 4);
+  return mask;
+}
