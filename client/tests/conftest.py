@@ -35,6 +35,7 @@ def pauses(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Nothing sleeps; the pauses are listed, and the clock goes on by them."""
     taken: list[float] = []
     monkeypatch.setattr("sheaf._session.time.sleep", taken.append)
+    monkeypatch.setattr("sheaf._http.random.random", lambda: 0.0)  # and nothing is left to chance
     return taken
 
 

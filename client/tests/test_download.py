@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import os
+import threading
 from pathlib import Path
 
 import httpx
 import pytest
-from fake_service import FakeJob, FakeService, cut_short, problem, sha256
+from fake_service import FakeJob, FakeService, Handler, cut_short, problem, sha256
 
 import sheaf
 
@@ -156,3 +157,32 @@ def test_numbers_in_names() -> None:
     assert [names.frame(number) for number in (7, 123, -5)] == ["a.07.b.exr", "a.123.b.exr", "a.-05.b.exr"]
     assert default_pattern("dir/box.glb") == "box.####.exr"
     assert default_pattern("a#b\n.glb") == "a_b_.####.exr"
+
+
+def test_files_are_fetched_side_by_side_and_told_in_order(
+    client: sheaf.Client, service: FakeService, tmp_path: Path, exr: bytes
+) -> None:
+    """Two answers that each wait for the other's request: one after the other they would never come."""
+    service.add(FakeJob("many", frames=dict.fromkeys(range(6), exr)))
+    meeting = threading.Barrier(2, timeout=60)
+
+    def meet(handler: Handler) -> None:
+        meeting.wait()
+        handler.send(200, exr, {})
+
+    service.fault(r"GET .*/[01]\.exr", meet, times=2)
+    told: list[int] = []
+    paths = client.job("many").download(tmp_path, connections=2, on_file=lambda number, _: told.append(number))
+    assert told == list(range(6))
+    assert all(path.read_bytes() == exr for path in paths)
+    assert len(paths) == 6
+
+
+def test_after_a_failure_nothing_more_is_begun(
+    client: sheaf.Client, service: FakeService, tmp_path: Path, exr: bytes
+) -> None:
+    service.add(FakeJob("many", frames=dict.fromkeys(range(50), exr)))
+    service.fault("GET .*/0.exr", problem(410, "The job was removed"))
+    with pytest.raises(sheaf.NotFound):
+        client.job("many").download(tmp_path, connections=1)
+    assert len(service.asked("GET .*exr")) < 50

@@ -16,7 +16,9 @@ import subprocess
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -212,6 +214,24 @@ def test_the_command(url: str, scene: Path, direct: Path, tmp_path: Path) -> Non
     for path in sorted(direct.glob("*.exr")):
         own, other = sheaf.read_exr(path), sheaf.read_exr(tmp_path / "out" / path.name)
         np.testing.assert_array_equal(own.rgba, other.rgba)
+
+
+def test_the_notebook_runs(url: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    notebook = json.loads((Path(__file__).parents[1] / "examples" / "render_and_plot.ipynb").read_text())
+    monkeypatch.setenv("SHEAF_SERVER", url)
+    monkeypatch.delenv("SHEAF_SCENE", raising=False)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    names: dict[str, Any] = {}
+    matplotlib.use("Agg")
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            text = "".join(cell["source"]).replace("480x270", "48x27")
+            exec(compile(text, cell["id"], "exec"), names)
+    assert [frame.number for frame in names["frames"]] == [0, 16, 32, 48]
+    assert len(list(names["folder"].iterdir())) == 8
+    assert names["figure"].axes[1].patches
+    names["plt"].close("all")
+    names["client"].close()
 
 
 def test_bad_scenes_and_settings_are_told_apart(url: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import colour
-from fake_service import FakeJob, FakeService, Handler, hang_up
+from fake_service import FakeJob, FakeService, Handler, hang_up, problem
 
 import sheaf
 
@@ -77,11 +77,26 @@ def test_polls_where_the_answer_is_no_stream(client: sheaf.Client, service: Fake
     assert len(service.asked("GET .*/events$")) == 1
 
 
-def test_gives_up_when_the_service_stays_away(client: sheaf.Client, service: FakeService, running: FakeJob) -> None:
+def test_gives_up_when_the_service_stays_away(
+    client: sheaf.Client, service: FakeService, running: FakeJob, pauses: list[float]
+) -> None:
     service.fault("GET .*/events", hang_up, times=1000)
     with pytest.raises(sheaf.TransportError):
         client.job("abc").wait()
-    assert len(service.asked("GET .*/events")) == 8
+    assert sum(pauses) == pytest.approx(sheaf.RetryPolicy().outage)
+    assert max(pauses) == sheaf.RetryPolicy().longest_pause
+
+
+def test_a_long_outage_is_waited_out_wherever_it_falls(
+    client: sheaf.Client, service: FakeService, running: FakeJob, pauses: list[float]
+) -> None:
+    """Longer than a single call is patient for: before the events, within them, and after the last."""
+    job = client.job("abc")
+    service.fault("GET", hang_up, times=9)
+    service.fault("GET .*/events", problem(503, "The service starts"), times=2)
+    service.fault("GET .*abc$", hang_up, times=9)
+    assert job.wait().state == "done"
+    assert sum(pauses) > 20
 
 
 def test_a_service_that_restarts_is_waited_for(

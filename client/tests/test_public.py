@@ -9,6 +9,8 @@ import sheaf
 
 NAMES = [
     "ApiError",
+    "AsyncClient",
+    "AsyncJob",
     "CameraKey",
     "CameraPath",
     "Client",
@@ -50,9 +52,13 @@ NAMES = [
     "read_exr",
 ]
 
+JOB = "cancel delete download events frame frames id info log preview progress refresh state stats wait"
+
 MEMBERS = {
     sheaf.Client: "close health job jobs submit",
-    sheaf.Job: "cancel delete download events frame frames id info log preview progress refresh state stats wait",
+    sheaf.AsyncClient: "close health job jobs submit",
+    sheaf.Job: JOB,
+    sheaf.AsyncJob: JOB,
     sheaf.Frame: "attributes layers number rgba size",
     sheaf.CameraPath: "fov_axis fps from_dict interpolation keys load look_at_keys loop save to_dict turntable",
     sheaf.JobInfo: "cancel_requested created error expires frames id is_over progress rendered settings state warnings",
@@ -72,7 +78,7 @@ def test_exported_names() -> None:
 def test_members() -> None:
     for owner, names in MEMBERS.items():
         fields = set(getattr(owner, "__dataclass_fields__", ())) | {name for name in dir(owner) if name[0] != "_"}
-        fields |= {"info"} if owner is sheaf.Job else set()
+        fields |= {"info"} if owner in (sheaf.Job, sheaf.AsyncJob) else set()
         missing = set(names.split()) - fields
         assert not missing, f"{owner.__name__}: {missing}"
 
@@ -91,6 +97,12 @@ def test_parameters() -> None:
     assert parameters(sheaf.Job.wait) == ["progress", "timeout"]
     assert parameters(sheaf.Job.frames) == ["numbers"]
     assert parameters(sheaf.Job.download)[:3] == ["folder", "previews", "overwrite"]
+    for name in JOB.replace("info", "").split():
+        blocking, other = getattr(sheaf.Job, name), getattr(sheaf.AsyncJob, name)
+        if inspect.isfunction(blocking):
+            assert parameters(blocking) == parameters(other), name
+    for name in ("__init__", "submit", "jobs", "job", "health", "close"):
+        assert parameters(getattr(sheaf.Client, name)) == parameters(getattr(sheaf.AsyncClient, name)), name
     assert parameters(sheaf.CameraPath.turntable)[:6] == ["center", "radius", "height", "seconds", "fps", "fov_degrees"]
 
 

@@ -21,11 +21,11 @@ import pytest
 
 from sheaf._program import Outcome, Program, option_list
 from sheaf.cli import main
-from sheaf.report import Study, StudyOptions, study, write_report
+from sheaf.report import Study, StudyOptions, study, write_report, write_sample
 from sheaf.report._errors import compare, pareto
 from sheaf.report._measure import Trial
 from sheaf.report._plan import Point
-from sheaf.report._sample import ball, write_sample
+from sheaf.report._sample import ball
 from sheaf.report._stability import stability
 from sheaf.report._tables import csv_tables, json_text
 

@@ -62,7 +62,7 @@ def test_polls_near_the_deadline_and_never_beyond_it() -> None:
 
 
 def test_patience_begins_anew_with_every_event() -> None:
-    watch = Watch(None, sheaf.RetryPolicy(attempts=2, first_pause=1.0, longest_pause=3.0))
+    watch = Watch(None, sheaf.RetryPolicy(first_pause=1.0, longest_pause=3.0, jitter=0.0, outage=6.0))
     lost = sheaf.TransportError("lost")
     assert [watch.lost(lost, streaming=True) for _ in range(3)] == [1.0, 2.0, 3.0]
     assert watch.next_step(0.0) == Poll(20.0)
@@ -74,3 +74,12 @@ def test_patience_begins_anew_with_every_event() -> None:
         watch.lost(lost, streaming=True)
     with pytest.raises(sheaf.NotFound):
         Watch(None, sheaf.RetryPolicy()).lost(sheaf.NotFound(404, "gone"), streaming=True)
+
+
+def test_a_retry_after_is_kept_to_and_pauses_are_spread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sheaf._http.random.random", lambda: 1.0)
+    policy = sheaf.RetryPolicy(first_pause=1.0, jitter=0.25)
+    assert policy.pause(1, sheaf.TransportError("lost")) == 0.75
+    assert policy.pause(1, sheaf.Unavailable(503, "full", retry_after=7.0)) == 7.0
+    assert Watch(None, policy).lost(sheaf.Unavailable(503, "full", retry_after=60.0), streaming=False) == 60.0
+    assert policy.backoff(10_000) == 7.5

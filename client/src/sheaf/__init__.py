@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Client for sheafd, the Sheaf render service: glTF animations in, EXR frames as NumPy arrays out."""
 
+from ._async_client import AsyncClient
+from ._async_job import AsyncJob
 from ._camera import CameraKey, CameraPath
 from ._client import Client
 from ._errors import (
@@ -33,6 +35,8 @@ from ._version import __version__
 
 __all__ = [
     "ApiError",
+    "AsyncClient",
+    "AsyncJob",
     "CameraKey",
     "CameraPath",
     "Client",

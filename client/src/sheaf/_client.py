@@ -52,12 +52,6 @@ class Client:
         transport: httpx.BaseTransport | None = None,
         retry: RetryPolicy | None = None,
     ) -> None:
-        try:
-            scheme = httpx.URL(url).scheme
-        except httpx.InvalidURL as error:
-            raise ValueError(f"{url!r}: {error}") from error
-        if scheme not in ("http", "https"):
-            raise ValueError(f"{url!r}: the service's address must begin with http:// or https://")
         self._session = Session(url, token, timeout, transport, retry or RetryPolicy())
 
     def __enter__(self) -> Client:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Which files a download brings, and bringing them. Only `fetch` does I/O on the network."""
+"""Which files a download brings, and bringing them. `_async_job` brings the same ones without blocking."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -52,6 +53,23 @@ def fetch(session: Session, job_id: str, wanted: Wanted, overwrite: bool) -> Non
     have = file_sha256(wanted.path) if wanted.path.is_file() and not overwrite else None
     if have is None or have != wanted.sha256:
         session.patiently(lambda: _fetch_once(session, job_id, wanted, have))
+
+
+def fetch_all(
+    session: Session, job_id: str, files: Sequence[Wanted], overwrite: bool, connections: int
+) -> Iterator[Wanted]:
+    """Brings files, several at once; tells of each once it is there, in the order given.
+
+    The first failure ends it: what is not begun by then is not fetched any more.
+    """
+    with ThreadPoolExecutor(max(1, connections), "sheaf-download") as pool:
+        coming = [pool.submit(fetch, session, job_id, wanted, overwrite) for wanted in files]
+        try:
+            for wanted, future in zip(files, coming, strict=True):
+                future.result()
+                yield wanted
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _fetch_once(session: Session, job_id: str, wanted: Wanted, have: str | None) -> None:

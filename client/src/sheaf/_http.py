@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import email.utils
 import json
+import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
@@ -77,19 +78,35 @@ class RetryPolicy:
         attempts: tries in all, at least 1.
         first_pause: seconds before the second try; doubles with every further one.
         longest_pause: seconds; also the longest Retry-After that is waited for. A longer one is raised.
+        jitter: share of a pause, 0 ... 1, by which it is shortened at random, so that many clients that lost the same
+            service do not all come back at once. A Retry-After is never shortened.
+        outage: seconds without any answer that waiting for a job bears, for example while the service restarts.
     """
 
     attempts: int = 4
     first_pause: float = 0.25
     longest_pause: float = 10.0
+    jitter: float = 0.25
+    outage: float = 300.0
 
     def pause(self, failures: int, error: SheafError) -> float | None:
         """Seconds to wait after the given number of failures in a row; None: give up and raise `error`."""
-        if failures >= self.attempts or not isinstance(error, (TransportError, Unavailable)):
+        if failures >= self.attempts or not worth_trying_again(error):
             return None
         if isinstance(error, Unavailable) and error.retry_after is not None:
             return error.retry_after if error.retry_after <= self.longest_pause else None
-        return min(self.first_pause * 2.0 ** (failures - 1), self.longest_pause)
+        return self.backoff(failures)
+
+    def backoff(self, failures: int) -> float:
+        """Seconds after the given number of failures in a row, where nobody says how many."""
+        doublings = min(failures - 1, 60)
+        longest = min(self.first_pause * 2.0**doublings, self.longest_pause)
+        return longest * (1.0 - self.jitter * random.random())  # noqa: S311 - no secret
+
+
+def worth_trying_again(error: SheafError) -> bool:
+    """Whether the same call may do better later."""
+    return isinstance(error, (TransportError, Unavailable))
 
 
 def api_error(response: httpx.Response) -> ApiError:

@@ -9,17 +9,17 @@ from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 
 from . import _calls
-from ._download import fetch, plan
-from ._errors import JobCancelled, JobFailed, NotFound, ProtocolError, SheafError
+from ._download import fetch_all, plan
+from ._errors import NotFound, SheafError
 from ._exr import Frame, read_exr
-from ._models import Event, JobInfo, JobState, Progress
-from ._progress import ProgressBar
+from ._job_view import JobView, reporting, unless_bad
+from ._models import Event, JobInfo, Progress
 from ._session import Session
 from ._stats import Stats
 from ._watch import Listen, Poll, SseParser, Watch
 
 
-class Job:
+class Job(JobView):
     """A submitted animation; made by `Client.submit`, `Client.job` and `Client.jobs`.
 
     What it says about itself is what the service said last: `refresh` and `wait` bring it up to date. Every method
@@ -30,26 +30,8 @@ class Job:
     """
 
     def __init__(self, session: Session, info: JobInfo) -> None:
+        super().__init__(info)
         self._session = session
-        self.info = info
-
-    def __repr__(self) -> str:
-        return f"Job({self.id!r}, {self.state!r}, {self.progress.done} of {self.progress.total} frames)"
-
-    @property
-    def id(self) -> str:
-        """The job's name on the service."""
-        return self.info.id
-
-    @property
-    def state(self) -> JobState:
-        """queued, running, done, failed or cancelled, as of the last answer."""
-        return self.info.state
-
-    @property
-    def progress(self) -> Progress:
-        """How far the job was at the last answer."""
-        return self.info.progress
 
     def refresh(self) -> Job:
         """Asks the service how the job is; returns the job itself."""
@@ -107,22 +89,27 @@ class Job:
             JobCancelled: it was cancelled.
             Timeout: it is not over in time. It goes on; `wait` may be called again.
         """
-        bar = ProgressBar() if progress is True else None
-        report = bar.update if bar else progress if callable(progress) else _no_report
-        try:
-            self.refresh()
+        with reporting(progress) as report:
+            self._refresh_patiently()
             report(self.progress)
             if not self.info.is_over:
                 with contextlib.closing(self.events(timeout=timeout)) as events:
                     for event in events:
                         self.info = self.info.after(event)
                         report(self.progress)
-                self.refresh()
+                self._refresh_patiently()
                 report(self.progress)
-        finally:
-            if bar:
-                bar.close()
-        return self._unless_bad()
+        unless_bad(self.info)
+        return self
+
+    def _refresh_patiently(self) -> None:
+        watch = Watch(None, self._session.retry)
+        while True:
+            try:
+                self.info = self._session.once(_calls.job(self.id))
+                return
+            except SheafError as error:
+                self._session.sleep(watch.lost(error, streaming=False))
 
     def frame(self, number: int) -> Frame:
         """A rendered frame as arrays.
@@ -197,8 +184,9 @@ class Job:
         name: str | None = None,
         numbers: Iterable[int] | None = None,
         on_file: Callable[[int, Path], object] | None = None,
+        connections: int = 4,
     ) -> list[Path]:
-        """Fetches frames into a folder, made where it is missing.
+        """Fetches frames into a folder, made where it is missing, several at once.
 
         Files appear under their name only when whole, with the checksum that the service tells. One that is there
         already and the same is left alone.
@@ -210,7 +198,8 @@ class Job:
             name: pattern of the names, the run of `#` becomes the frame number; None takes the service's names, which
                 are the scene's with the number in four digits, or the setting `name`.
             numbers: which frames; None gives all that are rendered by now.
-            on_file: called with frame number and path as each file is there.
+            on_file: called with frame number and path as each file is there, in frame order.
+            connections: how many files are fetched at once.
 
         Returns:
             Paths of all files, fetched or left alone, in frame order.
@@ -223,8 +212,7 @@ class Job:
         target = Path(folder)
         files = plan(self.refresh().info, target, numbers, name, previews)
         target.mkdir(parents=True, exist_ok=True)
-        for wanted in files:
-            fetch(self._session, self.id, wanted, overwrite)
+        for wanted in fetch_all(self._session, self.id, files, overwrite, connections):
             if on_file:
                 on_file(wanted.number, wanted.path)
         return [wanted.path for wanted in files]
@@ -246,23 +234,3 @@ class Job:
         page = self._session.once(_calls.poll(self.id, watch.last, step.seconds))
         yield from page.events
         watch.skip_to(page.last)
-
-    def _unless_bad(self) -> Job:
-        if self.state == "failed":
-            raise _failure(self.info)
-        if self.state == "cancelled":
-            raise JobCancelled(self.id)
-        if self.state != "done":
-            raise ProtocolError(f"job {self.id}: its events ended, but it is {self.state}")
-        return self
-
-
-def _failure(info: JobInfo) -> JobFailed:
-    error = info.error or {}
-    code, message = (str(error.get(name) or "unknown") for name in ("code", "message"))
-    exit_code = error.get("exit_code")
-    return JobFailed(info.id, code, message, exit_code if isinstance(exit_code, int) else None)
-
-
-def _no_report(_: Progress) -> None:
-    pass

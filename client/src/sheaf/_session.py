@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Blocking I/O: sends the calls that `_calls` describes. An asynchronous twin replaces this file, not those."""
+"""Blocking I/O: sends the calls that `_calls` describes. `_async_session` is its asynchronous twin."""
 
 from __future__ import annotations
 
@@ -28,11 +28,10 @@ class Session:
         transport: httpx.BaseTransport | None,
         retry: RetryPolicy,
     ) -> None:
-        headers = {"user-agent": f"sheaf-client/{__version__}", "accept": "application/json"}
-        if token:
-            headers["authorization"] = f"Bearer {token}"
         self.retry = retry
-        self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout, transport=transport)
+        self._http = httpx.Client(
+            base_url=checked_url(url), headers=own_headers(token), timeout=timeout, transport=transport
+        )
 
     def close(self) -> None:
         """Closes all connections."""
@@ -66,7 +65,7 @@ class Session:
     @contextlib.contextmanager
     def stream(self, call: Call[Any]) -> Iterator[httpx.Response]:
         """The answer with its body yet to be read; failures while reading it are translated too."""
-        request = self._request(call)
+        request = build_request(self._http, call)
         with translated(f"{call.method} {request.url}"):
             response = self._http.send(request, stream=True)
             try:
@@ -80,21 +79,46 @@ class Session:
     def once(self, call: Call[T]) -> T:
         """Sends and reads the answer, with one try."""
         with contextlib.ExitStack() as files:
-            request = self._request(call, files)
+            request = build_request(self._http, call, files)
             with translated(f"{call.method} {request.url}"):
                 response = self._http.send(request)
         if not is_answer(call, response):
             raise api_error(response)
         return call.parse(response)
 
-    def _request(self, call: Call[Any], files: contextlib.ExitStack | None = None) -> httpx.Request:
-        multipart = [_opened(part, files) for part in call.parts] if files is not None else []
-        request = self._http.build_request(
-            call.method, call.path, params=call.params, headers=call.headers, files=multipart or None
-        )
-        if call.read_timeout is not None:
-            request.extensions["timeout"]["read"] = call.read_timeout
-        return request
+
+def checked_url(url: str) -> str:
+    """The address of a service.
+
+    Raises:
+        ValueError: it is not an http or https one.
+    """
+    try:
+        scheme = httpx.URL(url).scheme
+    except httpx.InvalidURL as error:
+        raise ValueError(f"{url!r}: {error}") from error
+    if scheme not in ("http", "https"):
+        raise ValueError(f"{url!r}: the service's address must begin with http:// or https://")
+    return url
+
+
+def own_headers(token: str | None) -> dict[str, str]:
+    """What every request says."""
+    headers = {"user-agent": f"sheaf-client/{__version__}", "accept": "application/json"}
+    return headers | ({"authorization": f"Bearer {token}"} if token else {})
+
+
+def build_request(
+    http: httpx.Client | httpx.AsyncClient, call: Call[Any], files: contextlib.ExitStack | None = None
+) -> httpx.Request:
+    """The request of a call; its files are closed by `files`, and without it there are none."""
+    multipart = [_opened(part, files) for part in call.parts] if files is not None else []
+    request = http.build_request(
+        call.method, call.path, params=call.params, headers=call.headers, files=multipart or None
+    )
+    if call.read_timeout is not None:
+        request.extensions["timeout"]["read"] = call.read_timeout
+    return request
 
 
 def _opened(part: Part, files: contextlib.ExitStack) -> tuple[str, tuple[str | None, Any, str]]:

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from ._errors import ProtocolError, SheafError, Timeout
-from ._http import RetryPolicy
+from ._errors import ProtocolError, SheafError, Timeout, Unavailable
+from ._http import RetryPolicy, worth_trying_again
 from ._models import Event
 
 POLL_SECONDS = 20.0
@@ -46,16 +46,16 @@ class Watch:
 
     Args:
         after: id of the last event already known; None begins with the first.
-        retry: patience with lost connections, counted anew whenever something arrives.
+        retry: its `outage` is the patience with lost connections, counted anew whenever something arrives.
         deadline: end of the caller's patience on the clock that `next_step` is given; None waits for ever.
     """
 
     def __init__(self, after: str | None, retry: RetryPolicy, deadline: float | None = None) -> None:
         self.last = after
-        # More patience than for a single call: a service that restarts keeps its jobs.
-        self._retry = replace(retry, attempts=2 * retry.attempts)
+        self._retry = retry
         self._deadline = deadline
         self._failures = 0
+        self._paused = 0.0
         self._barren = 0
 
     def next_step(self, now: float) -> Listen | Poll:
@@ -83,7 +83,8 @@ class Watch:
         """Notes an event: the next exchange goes on after it."""
         if event.id:
             self.last = event.id
-        self._failures = self._barren = 0
+        self._answered()
+        self._barren = 0
 
     def skip_to(self, last: str | None) -> None:
         """Notes the id that a poll ended with; it may lie beyond the last event told."""
@@ -94,7 +95,7 @@ class Watch:
 
         Gives the seconds to pause, so that a service that ends exchanges at once is not asked in a tight loop.
         """
-        self._failures = 0
+        self._answered()
         if streaming:
             self._barren += 1
         return max(0.0, 1.0 - elapsed)
@@ -104,14 +105,24 @@ class Watch:
         self._barren = _BARREN_STREAMS
 
     def lost(self, error: SheafError, *, streaming: bool) -> float:
-        """Notes a failed exchange; gives the seconds to pause, or raises `error` once patience is over."""
+        """Notes a failed exchange; gives the seconds to pause, or raises `error` once patience is over.
+
+        A service that restarts keeps its jobs, so this is far more patient than a single call is.
+        """
         self._failures += 1
         if streaming:
             self._barren += 1
-        pause = self._retry.pause(self._failures, error)
-        if pause is None:
+        if not worth_trying_again(error) or self._paused >= self._retry.outage:
             raise error
+        asked = error.retry_after if isinstance(error, Unavailable) else None
+        pause = self._retry.backoff(self._failures) if asked is None else asked
+        pause = min(pause, self._retry.outage - self._paused)
+        self._paused += pause
         return pause
+
+    def _answered(self) -> None:
+        self._failures = 0
+        self._paused = 0.0
 
     def _is_close(self, now: float) -> bool:
         return self._deadline is not None and self._deadline - now < SILENCE_SECONDS

@@ -63,10 +63,9 @@ def add(commands: Any) -> None:
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Measures, and writes the report."""
     try:
-        from ..report import StudyOptions, study, write_report  # noqa: PLC0415 - an extra
+        from ..report import StudyOptions, study, write_report, write_sample  # noqa: PLC0415 - an extra
     except ImportError as error:
         raise UsageError(f"report wants more packages: pip install 'sheaf[report]' ({error})") from error
-    from ..report._sample import write_sample  # noqa: PLC0415
 
     names: tuple[str, ...] = (
         "size",

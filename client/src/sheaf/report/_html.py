@@ -81,6 +81,7 @@ p, li { max-width: 46rem; } .quiet, caption, figcaption { color: var(--quiet); f
 nav ul { display: flex; flex-wrap: wrap; gap: .3rem 1.2rem; list-style: none; padding: 0; }
 a { color: inherit; }
 .headline { background: var(--card); border-radius: .6rem; padding: .6rem 1.2rem; }
+.headline ul { margin: 0; padding-left: 1.1rem; } .headline li { margin: .3rem 0; }
 .headline strong { font-variant-numeric: tabular-nums; }
 .wide { overflow-x: auto; margin: .8rem 0; } .wide:focus-visible { outline: 2px solid var(--front); }
 table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; white-space: nowrap; }

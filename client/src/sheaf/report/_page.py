@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from ._canvas import short
 from ._html import NONE, STYLE, Cell, escaped, image, number, percent, table
 from ._measure import KINDS, Trial
 from ._pictures import pictures
@@ -98,7 +99,7 @@ def _front(scene: SceneStudy) -> str:
             [
                 Cell(name + trial.point.label, mark=mark),
                 *_times(trial),
-                number(trial.all_tests, ".4g"),
+                Cell(short(trial.all_tests), True),
                 number(errors.rmse),
                 number(errors.relative_mse),
                 number(errors.flip),

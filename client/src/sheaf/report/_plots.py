@@ -10,6 +10,7 @@ from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from ._canvas import KIND_COLOURS, KIND_MARKS, Draw, Theme, rows, short
 from ._measure import KINDS, Trial
@@ -118,6 +119,8 @@ def _dots(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
             if span:
                 axes.plot([min(span), max(span)], [row, row], color=theme.grid, linewidth=2, zorder=1)
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.xaxis.set_major_formatter(lambda value, _: short(value))
         axes.grid(axis="x", which="major")
         rows(axes, [trial.point.label for trial in ordered])
