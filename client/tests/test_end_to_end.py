@@ -25,6 +25,8 @@ import pytest
 import sheaf
 from sheaf.cli import main
 
+pytestmark = pytest.mark.filterwarnings("default:::distributed", "default:::tornado")
+
 START_SECONDS = 60  # a first start may compile shaders
 
 
@@ -232,6 +234,17 @@ def test_the_notebook_runs(url: str, monkeypatch: pytest.MonkeyPatch, tmp_path: 
     assert names["figure"].axes[1].patches
     names["plt"].close("all")
     names["client"].close()
+
+
+def test_a_farm_gives_the_files_of_sheaf_render(scene: Path, direct: Path, tmp_path: Path) -> None:
+    command = ["farm", "render", str(scene), "--local", "2", "--sheaf", str(program("sheaf")), "--out", str(tmp_path)]
+    assert main([*command, "--camera", str(scene.parent / "camera.json"), *OPTIONS.split()]) == 0
+    theirs = sorted(direct.glob("*.exr"))
+    assert [path.name for path in sorted(tmp_path.glob("*.exr"))] == [path.name for path in theirs]
+    for path in theirs:
+        own, other = sheaf.read_exr(path), sheaf.read_exr(tmp_path / path.name)
+        for name, pixels in own.layers.items():
+            np.testing.assert_array_equal(other.layers[name], pixels, err_msg=f"{path.name} {name}")
 
 
 def test_bad_scenes_and_settings_are_told_apart(url: str) -> None:

@@ -12,12 +12,12 @@ from typing import NoReturn
 
 from .._errors import SheafError
 from .._version import __version__
-from . import _camera, _jobs, _render, _study
+from . import _camera, _farm, _jobs, _render, _study
 from ._exit import Terminated, UsageError, exit_code
 from ._report import Report
 
 # Each command is a module with `add(subparsers)`, which sets `run(arguments, report)` as its parsers' default.
-_COMMANDS = (_render, _jobs, _camera, _study)
+_COMMANDS = (_render, _jobs, _camera, _farm, _study)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -39,7 +39,13 @@ def add(commands: Any) -> None:
         "--cancel-on-interrupt", action="store_true", help="Ctrl-C cancels the job; else it goes on without us"
     )
     add_server(parser)
-    settings = parser.add_argument_group("settings, as of `sheaf render`; what is not given is the service's default")
+    add_settings(parser)
+    parser.set_defaults(run=run)
+
+
+def add_settings(parser: argparse.ArgumentParser) -> None:
+    """Adds the settings of `sheaf render`, the camera path and the frames."""
+    settings = parser.add_argument_group("settings, as of `sheaf render`; what is not given is the renderer's default")
     settings.add_argument("--camera", metavar="PATH.json", help="camera path")
     settings.add_argument("--frames", help="A-B[:STEP], N,M,...")
     for name, kind in _NUMBERS.items():
@@ -49,23 +55,27 @@ def add(commands: Any) -> None:
     for name, choices in _CHOICES.items():
         settings.add_argument(f"--{name}", choices=get_args(choices))
     settings.add_argument("--opaque", action="store_true", default=None)
-    parser.set_defaults(run=run)
+
+
+def settings_of(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What was given of them, the camera path and the frames apart."""
+    if arguments.camera and arguments.camera_node:
+        raise UsageError("--camera and --camera-node exclude each other")
+    return {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque")}
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:
     """Renders."""
     if arguments.dump:
         raise UsageError("--dump: a service does not hand out dumps; use `sheaf render` for it")
-    if arguments.camera and arguments.camera_node:
-        raise UsageError("--camera and --camera-node exclude each other")
+    chosen = settings_of(arguments)
     arguments.name = checked_name(arguments.name or default_pattern(arguments.scene))
     frames = missing_frames(arguments) if arguments.resume and arguments.frames else arguments.frames
     if frames == "":
         report.finish("all frames are there already")
         return
     with connect(arguments) as client:
-        settings = {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque", "name")}
-        settings |= {"frames": frames, "preview": arguments.preview or None}
+        settings = chosen | {"name": arguments.name, "frames": frames, "preview": arguments.preview or None}
         job = client.submit(arguments.scene, arguments.camera, idempotency_key=arguments.idempotency_key, **settings)
         report.submitted(job.id)
         fetch(job, arguments, report, wait=True, overwrite=not arguments.resume)
