@@ -1,56 +1,44 @@
 // SPDX-License-Identifier: MIT
-// Hits of a bundle's rays that a material may take back wait here: asking materials takes long, so it is done for many at once,
-// one a lane, and the answers go to the rays they are of one after the other.
-const uint LEAF_FILLS = LEAF_TRIANGLES * BUNDLE;  // the most that one leaf adds
+// Hits of a lane's rays that a material may take back wait here: asking materials takes long, and what one lane needs all lanes
+// run, so it is done for many at once.
+const uint LEAF_FILLS = LEAF_TRIANGLES * VECTORS;  // the most that one leaf adds to a lane's queue
 const uint QUEUE = 2u * LEAF_FILLS;
-shared uint q_ray[QUEUE], q_triangle[QUEUE];
-shared float q_t[QUEUE];
-uint queued = 0u;  // the same in all lanes
+uint q_vector[QUEUE], q_triangle[QUEUE];
+float q_t[QUEUE];
+uint queued = 0u;  // of this lane
 
 bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
-bool queue_has_room() { return !asks_materials() || queued <= QUEUE - LEAF_FILLS; }
+bool queue_has_room() { return !asks_materials() || !any_lane(queued > QUEUE - LEAF_FILLS); }
 
-// What is asked depends on the barycentrics: the same test once more, which gives the same bits.
-void ask(uint e) {
-  uint k = q_ray[e], triangle = q_triangle[e];
-  Ray ray = LOAD_RAY(rays, order[first_ray + k]);
-  TriangleHit h = intersect_corners(make_shear(ray.origin, ray.direction), load_triangle(triangle), ray.tmin, ray.tmax);
-  if (!ANY_HIT) {
-    if (masked_out(triangle, h.barycentric)) q_triangle[e] = NO_INDEX;
-    return;
-  }
-  ivec3 passed = ivec3(0);
-  if (!crossing(triangle, h.barycentric, ray.direction, q_t[e], ray.tmax, passed)) return;
-  for (uint c = 0u; c < 3u; ++c) atomicAdd(stops[c * BUNDLE + k], passed[c]);
-  q_triangle[e] = NO_INDEX;
+void queue_pending(uint v, Pending pending) {
+  if (pending.triangle == NO_INDEX) return;
+  q_vector[queued] = v;
+  q_triangle[queued] = pending.triangle;
+  q_t[queued] = pending.t;
+  ++queued;
 }
 
-void take_answer(uint e) {
-  uint k = q_ray[e], v = k / LANES;
-  if (k % LANES != lane || q_triangle[e] == NO_INDEX) return;
-  bool takes = ANY_HIT || q_t[e] < r_t[v] || (q_t[e] == r_t[v] && q_triangle[e] < r_triangle[v]);
-  if (!takes) return;
-  r_triangle[v] = q_triangle[e];
-  r_t[v] = ANY_HIT ? -INFINITY : q_t[e];
-  if (ANY_HIT) r_end[v] = q_t[e];
+// What is asked depends on the barycentrics: the same test once more, which gives the same bits.
+void settle_one(uint v, uint triangle, float t) {
+  Ray ray = LOAD_RAY(rays, order[first_ray + v * LANES + lane]);
+  TriangleHit h = intersect_corners(make_shear(ray.origin, ray.direction), load_triangle(triangle), ray.tmin, ray.tmax);
+  if (ANY_HIT) {
+    ivec3 passed = ivec3(0);
+    if (crossing(triangle, h.barycentric, ray.direction, t, ray.tmax, passed)) {
+      r_stops[v] += passed;
+    } else {
+      r_triangle[v] = triangle;
+      r_end[v] = t;
+      r_t[v] = -INFINITY;
+    }
+    return;
+  }
+  if (!(t < r_t[v] || (t == r_t[v] && triangle < r_triangle[v])) || masked_out(triangle, h.barycentric)) return;
+  r_triangle[v] = triangle;
+  r_t[v] = t;
 }
 
 void settle_queue() {
-  sync();
-  for (uint e = lane; e < queued; e += LANES) ask(e);
-  sync();
-  for (uint e = 0u; e < queued; ++e) take_answer(e);
-  sync();
+  for (uint e = 0u; e < queued; ++e) settle_one(q_vector[e], q_triangle[e], q_t[e]);
   queued = 0u;
-}
-
-void queue_pending(uint v, Pending pending) {
-  uvec4 waiting = subgroupBallot(pending.triangle != NO_INDEX);
-  if (pending.triangle != NO_INDEX) {
-    uint at = queued + subgroupBallotExclusiveBitCount(waiting);
-    q_ray[at] = v * LANES + lane;
-    q_triangle[at] = pending.triangle;
-    q_t[at] = pending.t;
-  }
-  queued += subgroupBallotBitCount(waiting);
 }

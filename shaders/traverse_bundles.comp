@@ -8,9 +8,7 @@
 // Exact: see beam.glsl; the cone test is padded. Control flow as in single_ray.glsl.
 #define COMPUTE
 #include "common.glsl"
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_EXT_control_flow_attributes : require
 #include "rays.glsl"
 #include "scene.glsl"
 #include "candidate.glsl"
@@ -28,34 +26,30 @@ layout(constant_id = 1) const bool ANY_HIT = false;
 layout(constant_id = 10) const uint LANES = 8;    // of a subgroup, which is the workgroup
 layout(constant_id = 11) const uint VECTORS = 8;  // BUNDLE / LANES
 layout(push_constant) uniform Push { uint kind; } push;
+#include "lanes.glsl"
 
 // A lane's ray of each vector.
 vec3 r_origin[VECTORS], r_inverse[VECTORS], r_shear[VECTORS];
 float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, −∞ once there is nothing more to find; r_end: far
                                                       // limit of a shadow ray, or t where it is blocked
 uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
-shared int stops[3 * BUNDLE];
+ivec3 r_stops[VECTORS];
 Beam vector_beam;                                     // lane v: of vector v
 uint stack[STACK_SIZE];
 uint lane, ray_count, first_ray, octant;
 uint group = 0u, depth = 0u;                          // as in single_ray.glsl, the same in all lanes
 uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
 
-void sync() {
-  subgroupMemoryBarrierShared();
-  subgroupBarrier();
-}
-
 #include "bundle_queue.glsl"
 
 Extent extent_of(Extent mine) {
-  return Extent(subgroupMin(mine.olo), subgroupMax(mine.ohi), subgroupMin(mine.ilo), subgroupMax(mine.ihi), subgroupMin(mine.tmin));
+  return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
 }
 
 Beam load_bundle() {
   Extent own = Extent(vec3(INFINITY), vec3(-INFINITY), vec3(INFINITY), vec3(-INFINITY), INFINITY);
   float own_far = -INFINITY;
-  for (uint v = 0u; v < VECTORS; ++v) {
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
     uint k = v * LANES + lane;
     uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
     Ray ray = LOAD_RAY(rays, slot);
@@ -69,10 +63,9 @@ Beam load_bundle() {
     r_end[v] = ray.tmax;
     r_slot[v] = slot;
     r_triangle[v] = NO_INDEX;
-    if (ANY_HIT && TRANSLUCENT)
-      for (uint c = 0u; c < 3u; ++c) stops[c * BUNDLE + k] = 0;
+    if (ANY_HIT && TRANSLUCENT) r_stops[v] = ivec3(0);
     Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
-    float far = subgroupMax(r_t[v]);
+    float far = max_lanes(r_t[v]);
     if (lane == v % LANES) {
       own = e;  // with more vectors than lanes the last wins: then vector_beam is not used
       own_far = far;
@@ -84,7 +77,7 @@ Beam load_bundle() {
     }
   }
   if (VECTORS <= LANES && lane >= VECTORS) vector_beam.farthest = -INFINITY;
-  return make_beam(extent_of(own), subgroupMax(own_far));
+  return make_beam(extent_of(own), max_lanes(own_far));
 }
 
 // Pairs of words that all lanes want, held a pair a lane, or two where there are but four lanes.
@@ -128,7 +121,7 @@ uint entered_children(Beam beam, Cone cone, uint node) {
     bool there = c < WIDE && (boxes.grid.there & (1u << c)) != 0u;
     if (there) ++node_tests;
     bool enters = there && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
-    entered |= subgroupBallot(enters).x << base;
+    entered |= lanes_where(enters) << base;
   }
   return entered;
 }
@@ -158,46 +151,76 @@ uint next_child(out uint place) {
   return (slot & 1u) != 0u ? pair.y : pair.x;
 }
 
-void test_triangle(uint v, uint triangle, bool enters, Shear s) {
+// The rays of a vector at work.
+struct Work {
+  uint v;
+  Shear shear;
+  float tmin;
+  Nearest best;  // t −∞: nothing more to find
+  Shade shade;
+};
+
+void test_triangle(uint triangle, bool enters, inout Work w) {
   Corners corners = load_corners(triangle);
   Pending pending = NOTHING_PENDING;
-  if (enters && r_t[v] > -INFINITY) {
+  if (enters && w.best.t > -INFINITY) {
     ++triangle_tests;
     if (ANY_HIT) {
-      Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
-      consider_shadow_corners(corners, triangle, s, r_tmin[v], r_t[v], shade, pending);
-      if (shade.blocked) {
-        r_triangle[v] = triangle;
-        r_end[v] = shade.t;
-        r_t[v] = -INFINITY;
-      }
+      consider_shadow_corners(corners, triangle, w.shear, w.tmin, w.best.t, w.shade, pending);
+      if (w.shade.blocked) w.best.t = -INFINITY;
     } else {
-      Nearest best = Nearest(r_t[v], r_triangle[v]);
-      consider_nearest_corners(corners, triangle, s, r_tmin[v], best, pending);
-      r_t[v] = best.t;
-      r_triangle[v] = best.triangle;
+      consider_nearest_corners(corners, triangle, w.shear, w.tmin, w.best, pending);
     }
   }
-  if (asks_materials()) queue_pending(v, pending);
+  if (asks_materials()) queue_pending(w.v, pending);
+}
+
+Work load_work(uint v) {
+  Work w;
+  vec3 shear;
+  w.v = v;
+  PICK(w.shear.origin, r_origin, v);
+  PICK(w.shear.inverse, r_inverse, v);
+  PICK(shear, r_shear, v);
+  PICK(w.shear.axis, r_axis, v);
+  PICK(w.tmin, r_tmin, v);
+  PICK(w.best.t, r_t, v);
+  w.shear.sx = shear.x;
+  w.shear.sy = shear.y;
+  w.shear.sz = shear.z;
+  w.shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+  w.best.triangle = NO_INDEX;
+  if (!ANY_HIT) PICK(w.best.triangle, r_triangle, v);
+  return w;
+}
+
+void store_work(Work w) {
+  PUT(r_t, w.v, w.best.t);
+  if (!ANY_HIT) {
+    PUT(r_triangle, w.v, w.best.triangle);
+  } else if (w.shade.blocked) {
+    PUT(r_triangle, w.v, w.shade.triangle);
+    PUT(r_end, w.v, w.shade.t);
+  }
+  float far = max_lanes(w.best.t);
+  if (lane == w.v % LANES) vector_beam.farthest = far;
 }
 
 void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
-  Shear s = Shear(r_origin[v], r_inverse[v], r_shear[v].x, r_shear[v].y, r_shear[v].z, r_axis[v]);
-  vec2 range = slab(s, lo, hi);
-  bool enters = range.x <= range.y && range.y >= r_tmin[v] && range.x <= r_t[v];
+  Work w = load_work(v);
+  vec2 range = slab(w.shear, lo, hi);
+  bool enters = range.x <= range.y && range.y >= w.tmin && range.x <= w.best.t;
   if (v * LANES + lane < ray_count) ++box_tests;
-  uint first = leaf & 0x07FFFFFFu, last = first + ((leaf >> 27) & 15u) + 1u;
-  if (!subgroupAny(enters)) last = first;
-  for (uint triangle = first; triangle < last; ++triangle) test_triangle(v, triangle, enters, s);
-  float far = subgroupMax(r_t[v]);
-  if (lane == v % LANES) vector_beam.farthest = far;
+  uint first = leaf & 0x07FFFFFFu, last = any_lane(enters) ? first + ((leaf >> 27) & 15u) + 1u : first;
+  for (uint triangle = first; triangle < last; ++triangle) test_triangle(triangle, enters, w);
+  store_work(w);
 }
 
 void test_leaf(uint leaf, uint place) {
   Boxes boxes = load_boxes(place / WIDE);
   vec3 lo, hi;
   child_box(boxes, place % WIDE, lo, hi);
-  uint todo = VECTORS > LANES ? (1u << VECTORS) - 1u : subgroupBallot(beam_enters(vector_beam, lo, hi)).x;
+  uint todo = VECTORS > LANES ? (1u << VECTORS) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));
   while (todo != 0u) {
     test_vector(uint(findLSB(todo)), leaf, lo, hi);
     todo &= todo - 1u;
@@ -206,9 +229,9 @@ void test_leaf(uint leaf, uint place) {
 
 float farthest_hit() {
   float far = -INFINITY;
-  if (VECTORS <= LANES) return subgroupMax(vector_beam.farthest);
-  for (uint v = 0u; v < VECTORS; ++v) far = max(far, r_t[v]);
-  return subgroupMax(far);
+  if (VECTORS <= LANES) return max_lanes(vector_beam.farthest);
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) far = max(far, r_t[v]);
+  return max_lanes(far);
 }
 
 void walk(Beam beam, Cone cone) {
@@ -235,7 +258,7 @@ void store(uint v) {
   uint slot = r_slot[v];
   hits[slot] = r_triangle[v] == NO_INDEX ? NO_HIT : pack_hit(ANY_HIT ? r_end[v] : r_t[v], r_triangle[v]);
   if (ANY_HIT && TRANSLUCENT)
-    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = stops[c * BUNDLE + v * LANES + lane];
+    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = r_stops[v][c];
   if (PIXEL_COUNTED)
     count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / VECTORS);
 }
@@ -251,8 +274,7 @@ void main() {
   octant = octant_of(node.axis);
   Beam beam = load_bundle();
   walk(beam, cone_of(node));
-  sync();
-  for (uint v = 0u; v < VECTORS; ++v) store(v);
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) store(v);
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
   count_tests(push.kind, STAT_RAY_BOX, box_tests);
