@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: MIT
+# The page as one file without anything beside it: style and scripts go into index.html. Sets `index_html`.
+set(page_scripts api.js scene.js exr.js viewer.js charts.js player.js jobs.js)
+foreach(file IN ITEMS index.html page.css LISTS page_scripts)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/${file})
+endforeach()
+file(READ ${CMAKE_CURRENT_LIST_DIR}/index.html index_html)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/page.css page_style)
+set(page_script "")
+foreach(file IN LISTS page_scripts)
+  file(READ ${CMAKE_CURRENT_LIST_DIR}/${file} text)
+  string(APPEND page_script "${text}")
+endforeach()
+string(REPLACE "/* page.css */" "${page_style}" index_html "${index_html}")
+string(REPLACE "/* scripts */" "${page_script}" index_html "${index_html}")

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""The service's page in a real browser: Debian's chromium, driven by Playwright. Skipped where either is missing."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
+
+import pytest
+
+import sheaf
+
+HERE = pathlib.Path(__file__).resolve().parent
+BUILD = pathlib.Path(os.environ.get("SHEAF_BUILD", HERE / "../../build")).resolve()
+SCENES = HERE.parent / "scenes"
+PATIENCE_MS = 60_000
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+
+def chromium() -> str:
+    found = os.environ.get("SHEAF_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+    return found or pytest.skip("no chromium")
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A service's address; it is started once, and its worker is the real engine."""
+    process = subprocess.Popen(
+        [BUILD / "sheafd", "--listen", "127.0.0.1:0", "--min-free", "0"]
+        + ["--data", tmp_path_factory.mktemp("service") / "data"],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr
+    address = next(
+        (line.split('"address":"')[1].split('"')[0] for line in process.stderr if '"address":"' in line), None
+    )
+    reader = threading.Thread(target=process.stderr.read, daemon=True)  # or the pipe fills up
+    reader.start()
+    assert address, "sheafd did not start"
+    yield f"http://{address}/"
+    process.terminate()
+    assert process.wait(60) == 0
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[object]:
+    with playwright.sync_playwright() as driver:
+        # The sandbox wants user namespaces, which root in a container has not.
+        launched = driver.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        yield launched
+        launched.close()
+
+
+@pytest.fixture
+def visit(browser, service: str) -> Iterator[Callable[..., object]]:
+    """Opens the page in a window of its own. Errors on it, and requests to anywhere else, fail the test."""
+    bad: list[str] = []
+    contexts = []
+
+    def open_page(path: str = "", **options: object):
+        context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
+        context.set_default_timeout(PATIENCE_MS)
+        playwright.expect.set_options(timeout=PATIENCE_MS)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: bad.append(f"error: {error}"))
+        page.on("request", lambda request: bad.append(request.url) if is_elsewhere(request.url, service) else None)
+        page.goto(service + path)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert bad == []
+
+
+def is_elsewhere(url: str, service: str) -> bool:
+    return not url.startswith((service, "blob:", "data:"))
+
+
+@pytest.fixture(scope="session")
+def client(service: str) -> Iterator[sheaf.Client]:
+    with sheaf.Client(service) as made:
+        yield made
+
+
+@pytest.fixture(scope="session")
+def done(client: sheaf.Client) -> sheaf.Job:
+    """A small job with all layers, rendered in double precision: that needs no device to warm up."""
+    job = client.submit(
+        SCENES / "whitted.glb", frames="0-3", size="64x36", strategy="reference", aov="Z,N,id,tests", depth=2
+    )
+    return job.wait(timeout=PATIENCE_MS / 1000)

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""What a visitor can do: send a scene, watch it, play it, look into a frame, read what it cost, stop and remove it."""
+
+from __future__ import annotations
+
+import pathlib
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from conftest import PATIENCE_MS, SCENES, playwright
+
+import sheaf
+
+expect = playwright.expect
+Visit = Callable[..., object]
+
+
+def send(page, scene: pathlib.Path, frames: str = "0-2") -> None:
+    page.set_input_files("#files", scene)
+    page.select_option("[name=size]", "320x180")
+    page.select_option("[name=quality]", "draft")
+    page.click("summary")
+    page.select_option("[name=strategy]", "reference")
+    page.fill("[name=frames]", frames)
+    page.click("#submit")
+
+
+def test_a_scene_is_sent_watched_and_measured(visit: Visit) -> None:
+    page = visit()
+    expect(page.locator("#submit")).to_be_disabled()
+    page.set_input_files("#files", SCENES / "whitted.glb")
+    expect(page.locator("#scene-facts")).to_contain_text("6 meshes")
+    expect(page.locator("[name=frames]")).to_have_value("0-95")  # 4 s at 24 frames a second
+    assert page.locator("[name=animation] option").all_text_contents()[2:] == ["whitted"]
+    send(page, SCENES / "whitted.glb")
+    expect(page.locator("#job-title")).to_have_text("whitted.glb")
+    expect(page.locator("#job-state")).to_have_text("done")
+    expect(page.locator("#job-words")).to_contain_text("3 of 3 frames")
+    expect(page.locator("#strip li.done")).to_have_count(3)
+    expect(page.locator("#screen")).to_have_attribute("data-frame", "2")
+    expect(page.locator("#stages svg rect").first).to_be_attached()
+    expect(page.locator("#tests tbody tr")).to_have_count(4)  # all kinds of rays
+    assert page.locator("#left-out li").count() >= 1
+    expect(page.locator("#jobs button").first).to_have_attribute("aria-current", "true")
+
+
+def test_frames_arrive_while_one_watches(visit: Visit, client: sheaf.Client) -> None:
+    job = client.submit(SCENES / "whitted.glb", frames="0-999", size="640x360", spp=4, strategy="reference")
+    page = visit(f"#job={job.id}")
+    expect(page.locator("#job-state")).to_have_text("running")
+    expect(page.locator("#strip li.done").nth(2)).to_be_attached()
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#job-state")).to_have_text("cancelled")
+    page.once("dialog", lambda dialog: dialog.accept())
+    page.get_by_role("button", name="Remove").click()
+    expect(page.locator("#job-title")).to_have_text("No job chosen")
+    with pytest.raises(sheaf.NotFound):
+        job.refresh()
+
+
+def test_playing_by_mouse_and_keyboard(visit: Visit, done: sheaf.Job) -> None:
+    page = visit(f"#job={done.id}")
+    screen = page.locator("#screen")
+    expect(screen).to_have_attribute("data-frame", "3")
+    page.keyboard.press("ArrowLeft")
+    expect(screen).to_have_attribute("data-frame", "2")
+    page.locator("#strip button", has_text="0").click()
+    expect(screen).to_have_attribute("data-frame", "0")
+    page.locator("#job").focus()
+    page.keyboard.press("Space")
+    expect(page.locator("#play")).to_have_text("Pause")
+    expect(screen).not_to_have_attribute("data-frame", "0")
+    page.click("#play")
+    expect(page.locator("#play")).to_have_attribute("aria-pressed", "false")
+    page.locator("#scrub").focus()
+    page.keyboard.press("Home")
+    expect(screen).to_have_attribute("data-frame", "0")
+
+
+def test_a_frame_is_opened_with_all_its_layers(visit: Visit, done: sheaf.Job) -> None:
+    frame = done.frame(3)
+    page = visit(f"#job={done.id}")
+    page.click("#open")
+    expect(page.locator("#pixel")).to_contain_text("64 × 36")
+    layers = page.locator("#layer option").all_text_contents()
+    assert layers == ["colour", "depth", "normal", "object id", "material id", "tests"]
+    pictures = {}
+    for layer in layers:
+        page.select_option("#layer", layer)
+        pictures[layer] = page.locator("#canvas").screenshot()
+    assert len(set(pictures.values())) == len(layers)
+    box = page.locator("#canvas").bounding_box()
+    scale = min(box["width"] / 64, box["height"] / 36)
+    left = box["x"] + (box["width"] - 64 * scale) / 2
+    top = box["y"] + (box["height"] - 36 * scale) / 2
+    page.select_option("#layer", "depth")
+    for column, row in ((5, 30), (31, 20), (63, 35)):
+        page.mouse.move(left + (column + 0.5) * scale, top + (row + 0.5) * scale)
+        expect(page.locator("#pixel")).to_contain_text(f"({column}, {row}): Z ")
+        shown = float(page.locator("#pixel").text_content().rsplit(" ", 1)[1])
+        np.testing.assert_allclose(shown, frame.layers["Z"][row, column], rtol=1e-4)
+    page.select_option("#layer", "colour")
+    page.locator("#exposure").fill("3")
+    expect(page.locator("#exposure-value")).to_have_text("3.0")
+    assert page.locator("#canvas").screenshot() != pictures["colour"]
+    page.keyboard.press("Escape")
+    expect(page.locator("#viewer")).not_to_be_visible()
+
+
+@pytest.mark.parametrize("compression", ["none", "rle", "zips", "zip"])
+def test_every_compression_is_read_bit_for_bit(visit: Visit, client: sheaf.Client, compression: str) -> None:
+    settings = {"size": "37x21", "strategy": "reference", "aov": "Z,id", "compression": compression}
+    job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
+    page = visit()
+    read = page.evaluate(
+        """async (path) => {
+          const exr = await readExr(await (await ask(path)).arrayBuffer());
+          return Object.fromEntries(Object.entries(exr.channels).map(([name, plane]) => [name, Array.from(plane, String)]));
+        }""",
+        f"v1/jobs/{job.id}/frames/0.exr",
+    )
+    layers = job.frame(0).layers
+    for index, name in enumerate("RGBA"):
+        np.testing.assert_array_equal(numbers(read[name]), layers["RGBA"][..., index].ravel())
+    np.testing.assert_array_equal(numbers(read["Z"]), layers["Z"].ravel())
+    np.testing.assert_array_equal(numbers(read["id.object"]), layers["id.object"].ravel())
+
+
+def numbers(texts: list[str]) -> np.ndarray:
+    return np.array([float(text.replace("Infinity", "inf")) for text in texts], np.float32)
+
+
+def test_what_cannot_be_shown_says_so(visit: Visit, client: sheaf.Client) -> None:
+    settings = {"size": "37x21", "strategy": "reference", "compression": "piz"}
+    job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
+    page = visit(f"#job={job.id}")
+    page.click("#open")
+    expect(page.locator("#pixel")).to_contain_text("EXR compression piz is not shown here")
+
+
+def test_two_jobs_side_by_side(visit: Visit, client: sheaf.Client, done: sheaf.Job) -> None:
+    settings = {"size": "64x36", "strategy": "reference", "primary": "trace"}
+    client.submit(SCENES / "cornell.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
+    page = visit(f"#job={done.id}")
+    expect(page.locator("#tests tbody tr")).to_have_count(4)
+    option = page.locator("#compare option", has_text="cornell.glb, reference traced").first
+    page.select_option("#compare", option.get_attribute("value"))
+    expect(page.locator("#tests tbody tr").nth(4)).to_be_attached()
+
+
+def test_refusals_are_shown_in_words(visit: Visit, tmp_path: pathlib.Path) -> None:
+    bad = tmp_path / "bad.glb"
+    bad.write_bytes(b"this is no scene")
+    page = visit()
+    page.set_input_files("#files", bad)
+    page.click("#submit")
+    expect(page.get_by_role("alert").filter(has_text=re.compile("glTF|glb|scene", re.I)).first).to_be_visible()
+    page.set_input_files("#files", [__file__])
+    expect(page.locator("#new-error")).to_contain_text("None of these is a scene")
+    expect(page.locator("#submit")).to_be_disabled()
+    page.goto(page.url.split("#")[0] + f"#job={'a' * 26}")
+    page.reload()
+    expect(page.locator("#job-hint")).to_contain_text("no job")
+
+
+def test_a_token_is_asked_for_once(visit: Visit) -> None:
+    page = visit()
+    seen: list[str | None] = []
+
+    def guard(route) -> None:
+        given = route.request.headers.get("authorization")
+        seen.append(given)
+        if given == "Bearer secret":
+            route.fulfill(json={"jobs": [], "next": None})
+        else:
+            route.fulfill(status=401, json={"title": "A token is needed"})
+
+    page.route("**/v1/jobs?*", guard)
+    expect(page.locator("#token-dialog")).to_be_visible()
+    page.fill("#token", "secret")
+    page.keyboard.press("Enter")
+    expect(page.locator("#jobs")).to_contain_text("None yet.")
+    assert seen[-1] == "Bearer secret"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_on_a_phone_nothing_sticks_out(visit: Visit, done: sheaf.Job, scheme: str) -> None:
+    phone = {"viewport": {"width": 360, "height": 740}, "is_mobile": True, "has_touch": True}
+    page = visit(f"#job={done.id}", color_scheme=scheme, **phone)
+    expect(page.locator("#stats")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    small = page.evaluate(
+        """() => [...document.querySelectorAll("button, select, summary")].filter((each) => each.offsetParent)
+          .map((each) => each.getBoundingClientRect()).filter((box) => box.height < 24 || box.width < 24).length"""
+    )
+    assert small == 0
+    dark = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (sum(map(int, re.findall(r"\d+", dark)[:3])) < 300) == (scheme == "dark")
+    page.tap("#open")
+    expect(page.locator("#pixel")).to_contain_text("64 × 36")
+    assert page.evaluate("document.querySelector('#viewer').scrollWidth <= innerWidth")
+
+
+def test_everything_has_a_name_and_is_reached_by_keyboard(visit: Visit, done: sheaf.Job) -> None:
+    page = visit(f"#job={done.id}")
+    expect(page.locator("#stats")).to_be_visible()
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll("button, input, select")].filter((each) => each.offsetParent &&
+          !(each.labels?.length || each.getAttribute("aria-label") || each.textContent.trim())).map((each) => each.outerHTML)"""
+    )
+    assert nameless == []
+    reached = []
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.id || document.activeElement.name"))
+    for name in ("files", "frames", "size", "quality", "play", "scrub", "open", "compare"):
+        assert name in reached, name
