@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Pixels are a function of scene, camera, frame and settings: not of memory, threads, range or of what ran before."""
 
+import json
+import random
+
 import numpy as np
 import pytest
 
@@ -21,6 +24,18 @@ def test_memory_budget_does_not_show(sheaf, strategy):
     assert counts[0]["peak_device_mib"] < 0.6 * counts[1]["peak_device_mib"]
 
 
+@pytest.mark.parametrize("strategy", ["crsh", "rsh", "rayquery", "brute"])
+def test_memory_from_the_least_to_no_bound(sheaf, strategy):
+    """The least there is, the greatest that may be asked for, and one between that ends tiles somewhere else."""
+    if strategy == "rayquery" and not json.loads(sheaf("devices", "--json").stdout)[0]["ray_query"]:
+        pytest.skip("the device has no ray query")
+    runs = sheaf.all({"scene": "cornell", "options": ("--depth", 3, "--memory", mib), "size": "96x54", "strategy": strategy}
+                     for mib in (16, 37, 1048576))
+    for run in runs[1:]:
+        assert same(run.frame(), runs[0].frame())
+    assert len(np.unique(runs[0].frame().rgba.reshape(-1, 4), axis=0)) > 100
+
+
 def test_frames_alone_and_in_a_range(sheaf):
     runs = sheaf.all({"scene": "whitted", "options": ("--frames", frames), "strategy": "hybrid"}
                      for frames in ("9-13", "11", "13,11,10", "9-13"))
@@ -36,6 +51,37 @@ def test_threads_do_not_show(sheaf):
     files = [sheaf.render("whitted", "--frames", "5", strategy="hybrid", size="96x54", env={"LP_NUM_THREADS": threads})
              .files[5].read_bytes() for threads in ("1", "2", "3")]
     assert files[0] == files[1] == files[2]
+
+
+@pytest.mark.parametrize("strategy", ["bvh", "crsh"])
+def test_more_threads_than_cores_do_not_show(sheaf, strategy):
+    """And none but the caller's own."""
+    files = [sheaf.render("cornell", strategy=strategy, size="96x54", env={"LP_NUM_THREADS": threads}).files[0].read_bytes()
+             for threads in ("0", "1", "16")]
+    assert files[0] == files[1] == files[2]
+
+
+def test_any_split_over_unlike_nodes(sheaf):
+    """Frames dealt out at random to runs of other strategies, budgets and threads: the same pixels as one run gives."""
+    frames = range(20, 32)
+    (whole,) = sheaf.all([{"scene": "whitted", "options": ("--frames", "20-31"), "size": "48x27"}])
+    dice = random.Random(5)
+    shuffled = dice.sample(frames, len(frames))
+    parts = [shuffled[:1], shuffled[1:4], shuffled[4:9], shuffled[9:]]
+    nodes = [("hybrid", 16, "1"), ("bvh", 64, "3"), ("crsh", 16, "2"), ("hybrid", 4096, "0")]
+    for part, (strategy, mib, threads) in zip(parts, nodes):
+        run = sheaf.render("whitted", "--frames", ",".join(map(str, part)), "--memory", mib, strategy=strategy, size="48x27",
+                           env={"LP_NUM_THREADS": threads})
+        for number in part:
+            assert same(run.frame(number), whole.frame(number)), f"frame {number} by {strategy}"
+
+
+def test_a_second_run_over_the_first(sheaf):
+    """In the same folder, files already there: the same bytes again."""
+    first = sheaf.render("still_life", "--frames", "0-1", strategy="hybrid")
+    before = {number: path.read_bytes() for number, path in first.files.items()}
+    again = sheaf.render("still_life", "--frames", "0-1", strategy="hybrid", out=first.out)
+    assert {number: path.read_bytes() for number, path in again.files.items()} == before
 
 
 def test_counting_does_not_show(sheaf):
