@@ -37,12 +37,19 @@ def main() -> None:
     if sys.argv[1:] == ["render", "--help"]:
         print(HELP)
         return
-    scene, out = Path(sys.argv[2]), sys.argv[sys.argv.index("--out") + 1]
-    given = (re.fullmatch(r"--([a-z-]+)(?:=(.*))?", text) for text in sys.argv[3:])
-    options = {match[1]: match[2] or "yes" for match in given if match}
+    scene, options = Path(sys.argv[2]), parsed(sys.argv[3:])
     if not scene.is_file():
         fail(3, f"{scene}: no such file")
-    render(scene, Path(out), options)
+    render(scene, Path(options["out"]), options)
+
+
+def parsed(arguments: list[str]) -> dict[str, str]:
+    """Options by name, given as `--name=value` or `--name value`; switches are "yes"."""
+    options = {}
+    for text, following in zip(arguments, [*arguments[1:], "--"], strict=True):
+        if match := re.fullmatch(r"--([a-z-]+)(?:=(.*))?", text):
+            options[match[1]] = match[2] or ("yes" if following.startswith("--") else following)
+    return options
 
 
 def render(scene: Path, out: Path, options: dict[str, str]) -> None:
