@@ -26,7 +26,8 @@ std::string default_worker() {
 struct Given {
   std::string listen = "127.0.0.1:8080";
   std::uint64_t upload_mib = Limits{}.upload_bytes >> 20, unpacked_mib = Limits{}.unpacked_bytes >> 20;
-  std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256;
+  std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256, kept_mib = 0;
+  std::uint64_t worker_mib = 16'384, file_mib = 8192, wall_s = 7 * 86'400;
   double grace_s = 5, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30, head_timeout_s = 10;
 };
 
@@ -48,8 +49,12 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
   limit("--max-queue", limits.queued_jobs, "jobs that wait");
   limit("--max-log", given.log_kib, "KiB kept of a worker's log");
   limit("--max-connections", options.http.max_connections, "open connections");
-  limit("--max-streams", options.streams, "clients that wait for events; each holds a thread, so fewer than those");
+  limit("--max-streams", options.streams, "clients that wait for events");
   limit("--http-threads", options.http.threads, "threads that answer requests");
+  limit("--worker-memory", given.worker_mib, "MiB of private memory of a worker");
+  limit("--max-cpu", options.service.runner.confinement.cpu_seconds, "seconds of processor time of a worker");
+  limit("--max-wall", given.wall_s, "seconds that a worker may run");
+  limit("--max-file", given.file_mib, "MiB of one file that a worker writes");
   app.add_option("--min-free", given.free_mib, "MiB of free disk below which no job is taken")
       ->capture_default_str()
       ->group("Limits");
@@ -70,14 +75,16 @@ void apply(const Given& given, ProgramOptions& options) {
   options.http.timeouts.head = milliseconds(given.head_timeout_s);
   options.heartbeat = milliseconds(given.heartbeat_s);
   options.service.least_free_bytes = given.free_mib << 20;
+  RunnerOptions& runner = options.service.runner;
+  runner.confinement.memory_bytes = given.worker_mib << 20;
+  runner.confinement.file_bytes = given.file_mib << 20;
+  runner.wall = std::chrono::seconds(given.wall_s);
+  options.service.kept_bytes = given.kept_mib << 20;
   options.service.runner.log_bytes = limits.log_bytes;
   options.service.runner.grace = milliseconds(given.grace_s);
   options.service.runner.retention = std::chrono::seconds(
       given.retention_h > 0 ? std::max<std::int64_t>(1, std::llround(given.retention_h * 3600)) : 0);
   split_address(given.listen, options.host, options.port);
-  if (options.streams >= options.http.threads)
-    throw Error(ErrorKind::usage, "--max-streams " + std::to_string(options.streams) +
-                                      ": must be below --http-threads " + std::to_string(options.http.threads));
 }
 
 }  // namespace
@@ -101,16 +108,32 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
   options.service.runner.sheaf = default_worker();
   CLI::App app("Renders glTF animations sent over HTTP, each job in a sheaf process of its own.", "sheafd");
   app.set_version_flag("--version", "sheafd " SHEAF_VERSION);
-  app.add_option("--listen", given.listen, "HOST:PORT; port 0: any free one")->capture_default_str();
+  app.add_option("--listen", given.listen, "HOST:PORT; port 0: any free one")->capture_default_str()->take_last();
   app.add_option("--data", options.data, "folder for jobs and their files; without it one that is removed at the end");
   app.add_option("--sheaf", options.service.runner.sheaf, "the worker's program")->capture_default_str();
   app.add_option("--jobs", options.service.jobs_at_once, "workers at once")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
   app.add_option("--port-file", options.port_file, "file that is given the bound address once the service listens");
+  app.add_option("--token-file", options.token_file,
+                 "who may use the service: lines \"NAME read,submit sha256:HEX\"; needed beyond loopback");
+  app.add_flag("--allow-anonymous", options.anonymous, "listen beyond loopback without a token file");
+  app.add_option("--new-token", options.new_token,
+                 "NAME=SCOPES: print the token file's line for a new token, and on stderr the token, and end");
   app.add_option("--retention", given.retention_h, "hours that a finished job is kept; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--max-kept", given.kept_mib, "MiB of all jobs; beyond it, ended ones go, the earliest first; 0: any")
+      ->capture_default_str()
+      ->group("Limits");
+  app.add_flag("!--no-confinement", options.service.runner.confinement.on,
+               "let workers read and do whatever the service may (limits stay)");
+  app.add_option("--worker-reads", options.service.runner.confinement.readable,
+                 "further folder that workers may read, as for drivers in unusual places; may be repeated");
+  app.add_option("--attempts", options.service.runner.attempts,
+                 "starts of a job's worker without a new frame, where a lost device or a kill from outside ended it")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   app.add_option("--grace", given.grace_s, "seconds from SIGTERM to SIGKILL for a worker that is to stop")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

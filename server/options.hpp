@@ -12,8 +12,11 @@ namespace sheaf::server {
 struct ProgramOptions {
   std::string host = "127.0.0.1", port = "8080";
   std::string data;       // empty: a folder of its own, removed at the end
-  std::string port_file;  // empty: none
-  std::size_t streams = 16;
+  std::string port_file;   // empty: none
+  std::string token_file;  // empty: none
+  std::string new_token;   // to be made and printed instead of serving
+  bool anonymous = false;  // beyond loopback without tokens
+  std::size_t streams = 2000;
   std::chrono::milliseconds heartbeat{15'000};
   HttpOptions http;
   ServiceOptions service;

@@ -5,12 +5,14 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "jobs/memory_job_store.hpp"
 #include "routes/routes.hpp"
+#include "store/sqlite_job_store.hpp"
 #include "util/log.hpp"
 
 namespace sheaf::server {
 namespace {
+
+constexpr const char* database_name = "jobs.db";
 
 /// The data folder: the one named, or one of our own that goes with us.
 class DataFolder {
@@ -35,12 +37,15 @@ class DataFolder {
 };
 
 void write_access_log(const ExchangeRecord& exchange) {
-  write_log(LogLevel::info, "request",
-            {{"request", exchange.id},
-             {"method", exchange.method},
-             {"path", exchange.path},
-             {"status", exchange.status},
-             {"ms", exchange.seconds.count() * 1000}});
+  nlohmann::json fields{{"request", exchange.id},
+                        {"method", exchange.method},
+                        {"path", exchange.path},
+                        {"status", exchange.status},
+                        {"ms", exchange.seconds.count() * 1000}};
+  if (!exchange.job.empty()) fields["job"] = exchange.job;
+  if (!exchange.client.empty()) fields["client"] = exchange.client;
+  if (!exchange.refusal.empty()) fields["refusal"] = exchange.refusal;
+  write_log(LogLevel::info, "request", fields);
 }
 
 }  // namespace
@@ -48,18 +53,29 @@ void write_access_log(const ExchangeRecord& exchange) {
 struct Service::Parts {
   explicit Parts(const ProgramOptions& given)
       : options(given),
+        tokens(given.token_file.empty() ? Tokens() : Tokens(given.token_file)),
         folder(given.data),
         files(folder.path()),
+        fresh(!std::filesystem::exists(files.data() / database_name)),
+        store((files.data() / database_name).string()),
         jobs(given.service, store, files),
         streams(given.streams),
         device(given.service.runner.sheaf),
-        context{jobs, streams, metrics, device, [this] { return http.connections(); }, given.heartbeat},
+        context{jobs,
+                streams,
+                metrics,
+                device,
+                [this] { return http.connections(); },
+                active_measures(given.service.runner.confinement),
+                given.heartbeat},
         http(
-            given.http, [this](Request& request) { return handle(router, request); },
+            given.http, [this](Request& request) { return handle(router, tokens, request); },
             [this](const ExchangeRecord& exchange) {
               metrics.count(exchange);
               write_access_log(exchange);
             }) {
+    write_log(LogLevel::info, "worker confinement", {{"active", context.confinement}, {"known", all_measures()}});
+    jobs.recover(fresh);
     add_job_routes(router, context);
     add_event_routes(router, context);
     add_result_routes(router, context);
@@ -67,9 +83,11 @@ struct Service::Parts {
   }
 
   ProgramOptions options;
+  Tokens tokens;
   DataFolder folder;
-  MemoryJobStore store;
-  JobFiles files;
+  JobFiles files;  // holds the folder's lock: nobody else has the database open
+  bool fresh;
+  SqliteJobStore store;
   JobService jobs;
   StreamSlots streams;
   Metrics metrics;
@@ -82,7 +100,17 @@ struct Service::Parts {
 Service::Service(const ProgramOptions& options) : parts_(std::make_unique<Parts>(options)) {}
 Service::~Service() = default;
 
-std::string Service::bind() { return parts_->http.bind(parts_->options.host, parts_->options.port); }
+std::string Service::bind() {
+  const ProgramOptions& options = parts_->options;
+  const std::string address = parts_->http.bind(options.host, options.port);
+  const bool local = address.starts_with("127.") || address.starts_with("[::1]") || address.starts_with("[::ffff:127.");
+  if (!local && !parts_->tokens.required() && !options.anonymous)
+    throw Error(ErrorKind::usage,
+                "--listen " + address +
+                    " is open to other machines: give a --token-file, or --allow-anonymous if whoever "
+                    "can connect may submit jobs");
+  return address;
+}
 
 void Service::run() {
   parts_->http.run();

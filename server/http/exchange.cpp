@@ -14,6 +14,7 @@ thread_local const ExchangeScope::Answer* current = nullptr;
 Reply problem_reply(const Problem& problem, const std::string& instance) {
   Reply reply;
   reply.status = problem.status();
+  reply.refusal = problem.slug();
   reply.content_type = "application/problem+json";
   reply.body = problem.body(instance).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   reply.headers = problem.headers();
@@ -109,6 +110,8 @@ void fill(httplib::Response& response, Reply reply, const RequestHead& head) {
     fill_stream(response, std::move(*reply.stream), reply.content_type, !head.http_1_0);
   else if (!reply.body.empty())
     response.set_content(reply.body, reply.content_type);
+  else if (reply.lasting)
+    response.set_header("Content-Type", reply.content_type);
 }
 
 void rehearse(const std::function<bool(httplib::Stream&)>& run) {
@@ -120,6 +123,15 @@ void rehearse(const std::function<bool(httplib::Stream&)>& run) {
     fill(response, std::move(reply), RequestHead{});
   });
   if (!run(stream)) throw io_error("cpp-httplib", "an exchange with nobody failed");
+}
+
+std::string lasting_head(const Reply& reply, bool chunked, bool keep) {
+  std::string head = "HTTP/1.1 " + std::to_string(reply.status) + " OK\r\n";
+  for (const auto& [name, value] : reply.headers) head += name + ": " + value + "\r\n";
+  head += "Content-Type: " + reply.content_type + "\r\nX-Content-Type-Options: nosniff\r\n";
+  if (chunked) head += "Transfer-Encoding: chunked\r\n";
+  if (!keep) head += "Connection: close\r\n";
+  return head + "\r\n";
 }
 
 std::string plain_refusal(const Problem& problem) {

@@ -35,6 +35,9 @@ void install_exchange(httplib::Server& server);
 
 void fill(httplib::Response& response, Reply reply, const RequestHead& head);
 
+/// Status line and headers of a reply that lasts, written without the library.
+[[nodiscard]] std::string lasting_head(const Reply& reply, bool chunked, bool keep);
+
 /// A whole HTTP reply as text, for a head that was refused before it could be routed.
 [[nodiscard]] std::string plain_refusal(const Problem& problem);
 

@@ -48,7 +48,12 @@ HttpServer::HttpServer(HttpOptions options, Handler handler, Observer observer)
       handler_(std::move(handler)),
       observer_(std::move(observer)),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
-      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      pump_(options.timeouts.write, [this](ConnectionPtr connection, const ExchangeRecord& record, bool keep) {
+        if (observer_) observer_(record);
+        if (keep && !stopping_) return park(std::move(connection));
+        discard(std::move(connection));
+      }) {
   if (!epoll_.valid() || !wake_.valid()) throw io_error("epoll", std::strerror(errno));
   install_exchange(*this);
   svr_sock_ = epoll_.get();  // the library takes any valid descriptor for "running"
@@ -105,6 +110,7 @@ void HttpServer::run() {
     drained_.wait_for(lock, options_.drain, [this] { return busy_.empty() && waiting_.empty(); });
     closed_ = true;
   }
+  pump_.stop(Clock::now() + options_.drain);
   svr_sock_ = INVALID_SOCKET;
   shutdown_sockets(SHUT_RDWR);
   ready_.notify_all();
@@ -134,7 +140,7 @@ void HttpServer::accept_clients() {
       continue;
     }
     ++open_;
-    park(std::make_unique<Connection>(std::move(fd), options_));
+    park(std::make_unique<Connection>(std::move(fd), options_.timeouts, options_.head));
   }
 }
 
@@ -191,13 +197,18 @@ void HttpServer::serve(ConnectionPtr connection) {
   bool keep = true;
   do {
     try {
-      keep = serve_one(connection->stream);
+      keep = serve_one(connection);
     } catch (const std::exception& error) {
       write_log(LogLevel::error, "connection dropped", {{"reason", error.what()}});
       keep = false;
     }
   } while (keep && !stopping_ && connection->stream.has_buffered());
+  if (!connection) return;  // handed over
   if (keep && !stopping_) return park(std::move(connection));
+  discard(std::move(connection));
+}
+
+void HttpServer::discard(ConnectionPtr connection) {
   const std::lock_guard lock(mutex_);
   busy_.erase(connection->stream.fd());
   connection.reset();
@@ -205,7 +216,9 @@ void HttpServer::serve(ConnectionPtr connection) {
   drained_.notify_all();
 }
 
-bool HttpServer::serve_one(ClientStream& stream) {
+/// True if another request may follow on the connection; it is null if it was handed over.
+bool HttpServer::serve_one(ConnectionPtr& connection) {
+  ClientStream& stream = connection->stream;
   const auto started = Clock::now();
   std::optional<RequestHead> head;
   try {
@@ -219,7 +232,12 @@ bool HttpServer::serve_one(ClientStream& stream) {
   ExchangeRecord record;
   record.id = random_id().substr(0, 16);
   record.method = head->method;
-  const ExchangeScope scope([&](httplib::Response& response) { answer(*head, stream, response, record); });
+  Reply reply = answer(*head, stream, record);
+  if (reply.lasting && head->method != "HEAD") {
+    hand_over(std::move(connection), *head, std::move(reply), record, started);
+    return false;
+  }
+  const ExchangeScope scope([&](httplib::Response& response) { fill(response, std::move(reply), *head); });
   const bool sent = run_exchange(*this, &HttpServer::process_request, stream);
   record.seconds = Clock::now() - started;
   if (observer_) observer_(record);
@@ -228,8 +246,21 @@ bool HttpServer::serve_one(ClientStream& stream) {
   return sent && head->keep_alive && stream.body_finished();
 }
 
-void HttpServer::answer(const RequestHead& head, ClientStream& stream, httplib::Response& response,
-                        ExchangeRecord& record) {
+/// What the client sends meanwhile stays in its socket until the reply is over.
+void HttpServer::hand_over(ConnectionPtr connection, const RequestHead& head, Reply reply, const ExchangeRecord& record,
+                           Clock::time_point started) {
+  const bool chunked = !head.http_1_0;
+  const bool keep = head.keep_alive && connection->stream.body_finished() && !connection->stream.has_buffered();
+  {
+    const std::lock_guard lock(mutex_);
+    busy_.erase(connection->stream.fd());
+    drained_.notify_all();
+  }
+  std::string text = lasting_head(reply, chunked, keep);
+  pump_.add({std::move(connection), std::move(text), *std::move(reply.lasting), chunked, keep, record, started});
+}
+
+Reply HttpServer::answer(const RequestHead& head, ClientStream& stream, ExchangeRecord& record) {
   Request request;
   request.method = head.method;
   request.headers = head.headers;
@@ -242,15 +273,19 @@ void HttpServer::answer(const RequestHead& head, ClientStream& stream, httplib::
     return handler_(checked);
   });
   record.path = request.path;
+  record.job = request.parameters.contains("id") ? request.parameters["id"] : "";
+  record.client = request.client;
   record.status = reply.status;
+  record.refusal = reply.refusal;
   reply.header("X-Request-Id", record.id);
   if (!stream.body_finished() && head.keep_alive) reply.header("Connection", "close");
-  fill(response, std::move(reply), head);
+  return reply;
 }
 
 bool HttpServer::refuse_head(ClientStream& stream, const Problem& problem) {
   ExchangeRecord record;
   record.status = problem.status();
+  record.refusal = problem.slug();
   const std::string text = plain_refusal(problem);
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t n = stream.write(text.data() + at, text.size() - at);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Connections to threads. Idle keep-alive connections wait in epoll and cost no thread; a connection takes a thread
-// from the pool while it sends a request and is sent the reply. Replies that last (event streams) therefore hold a
-// thread each: the service bounds them below the pool's size. cpp-httplib runs the exchange and writes the reply.
+// from the pool while it sends a request and is sent the reply. A reply that lasts (an event stream) takes the
+// connection on to the stream pump. cpp-httplib runs the exchange and writes every other reply.
 #pragma once
 
 #include <httplib.h>
@@ -15,26 +15,20 @@
 #include <mutex>
 #include <thread>
 
-#include "http/client_stream.hpp"
+#include "http/connection.hpp"
 #include "http/message.hpp"
+#include "http/stream_pump.hpp"
 
 namespace sheaf::server {
 
 struct HttpOptions {
   std::size_t threads = 32;
-  std::size_t max_connections = 900;  // below the usual limit of 1024 open files
+  std::size_t max_connections = 4000;
   std::uint64_t max_body = std::uint64_t{1} << 30;
   std::chrono::seconds keep_alive{75};  // how long an idle connection may wait for its next request
   std::chrono::seconds drain{3};        // how long replies may go on once stop() was called
   StreamTimeouts timeouts;
   HeadLimits head;
-};
-
-/// What is told about each finished exchange.
-struct ExchangeRecord {
-  std::string id, method, path;
-  int status = 0;
-  std::chrono::duration<double> seconds{0};
 };
 
 class HttpServer : private httplib::Server {
@@ -55,22 +49,17 @@ class HttpServer : private httplib::Server {
   [[nodiscard]] std::size_t connections() const { return open_.load(); }
 
  private:
-  struct Connection {
-    explicit Connection(Fd socket, const HttpOptions& options)
-        : stream(std::move(socket), options.timeouts, options.head) {}
-    ClientStream stream;
-    std::chrono::steady_clock::time_point idle_since = std::chrono::steady_clock::now();
-  };
-  using ConnectionPtr = std::unique_ptr<Connection>;
-
   void accept_clients();
   void wake_connection(int fd);
   void close_idle(std::chrono::steady_clock::time_point before);
   void park(ConnectionPtr connection);
   void work();
   void serve(ConnectionPtr connection);
-  bool serve_one(ClientStream& stream);
-  void answer(const RequestHead& head, ClientStream& stream, httplib::Response& response, ExchangeRecord& record);
+  void discard(ConnectionPtr connection);
+  bool serve_one(ConnectionPtr& connection);
+  void hand_over(ConnectionPtr connection, const RequestHead& head, Reply reply, const ExchangeRecord& record,
+                 std::chrono::steady_clock::time_point started);
+  Reply answer(const RequestHead& head, ClientStream& stream, ExchangeRecord& record);
   bool refuse_head(ClientStream& stream, const class Problem& problem);
   void shutdown_sockets(int how);
 
@@ -88,6 +77,7 @@ class HttpServer : private httplib::Server {
   std::map<int, Connection*> busy_;
   bool closed_ = false;  // workers end when nothing waits
   std::vector<std::thread> workers_;
+  StreamPump pump_;
 };
 
 }  // namespace sheaf::server

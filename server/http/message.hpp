@@ -2,9 +2,11 @@
 // Requests and replies as the routes see them, apart from any HTTP library.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,6 +29,7 @@ struct Request {
   Headers headers;
   std::map<std::string, std::string> parameters;  // the route's placeholders
   std::string id;                                 // this request's, for the log
+  std::string client;                             // name of its token
 
   /// Next bytes of the body, at most `size`; 0 at its end. Throws Problem: too slow, cut off, malformed, too large.
   std::function<std::size_t(char* into, std::size_t size)> read_body;
@@ -47,12 +50,26 @@ struct StreamBody {
   std::function<bool(const Writer& write)> produce;
 };
 
+/// A body that lasts: its bytes come when there is news, and nobody waits in between.
+struct LastingBody {
+  /// Appends what is to be sent now; false once nothing will follow.
+  std::function<bool(std::string& out)> advance;
+
+  /// When advance() is to be called though there was no news.
+  std::function<std::chrono::steady_clock::time_point()> due;
+
+  /// From now on `wake` is called, from any thread, when there is news; until the result is gone.
+  std::function<std::shared_ptr<void>(std::function<void()> wake)> watch;
+};
+
 struct Reply {
   int status = 200;
   Headers headers;
   std::string content_type;
   std::string body;
   std::optional<StreamBody> stream;
+  std::optional<LastingBody> lasting;
+  std::string refusal;  // a problem's slug
 
   Reply& header(std::string name, std::string value) {
     headers.emplace_back(std::move(name), std::move(value));

@@ -19,6 +19,10 @@ Row row_of(ProblemKind kind) {
       return {400, "malformed-json", "A JSON part is not JSON"};
     case ProblemKind::foreign_origin:
       return {403, "foreign-origin", "Requests from other sites' pages are refused"};
+    case ProblemKind::unauthorized:
+      return {401, "unauthorized", "A token is needed"};
+    case ProblemKind::insufficient_scope:
+      return {403, "insufficient-scope", "The token does not allow this"};
     case ProblemKind::unknown_route:
       return {404, "unknown-route", "There is no such route"};
     case ProblemKind::unknown_job:
@@ -78,6 +82,8 @@ Row row_of(ProblemKind kind) {
 Problem::Problem(ProblemKind kind, std::string detail) : kind_(kind), detail_(std::move(detail)) {}
 
 int Problem::status() const { return row_of(kind_).status; }
+
+const char* Problem::slug() const { return row_of(kind_).slug; }
 
 nlohmann::ordered_json Problem::body(const std::string& instance) const {
   const Row row = row_of(kind_);

@@ -18,6 +18,8 @@ enum class ProblemKind {
   malformed_multipart,
   malformed_json,
   foreign_origin,
+  unauthorized,
+  insufficient_scope,
   unknown_route,
   unknown_job,
   unknown_frame,
@@ -60,6 +62,7 @@ class Problem : public std::exception {
   }
 
   [[nodiscard]] int status() const;
+  [[nodiscard]] const char* slug() const;
   [[nodiscard]] ProblemKind kind() const { return kind_; }
   [[nodiscard]] const std::string& detail() const { return detail_; }
   [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& headers() const { return headers_; }

@@ -54,7 +54,8 @@ bool Router::matches(const Route& route, const std::vector<std::string>& segment
 }
 
 Reply Router::dispatch(Request& request) const {
-  static constexpr std::array known{"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "CONNECT"};
+  static constexpr std::array known{"GET",     "HEAD",  "POST",  "PUT",     "DELETE",
+                                    "OPTIONS", "PATCH", "TRACE", "CONNECT", "QUERY"};
   if (std::ranges::find(known, request.method) == known.end())
     throw Problem(ProblemKind::not_implemented, "method " + request.method + " is not known");
   const std::vector<std::string> segments = split_path(request.path);

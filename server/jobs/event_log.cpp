@@ -5,29 +5,48 @@
 
 namespace sheaf::server {
 
-void EventLog::append(const std::string& type, nlohmann::ordered_json data) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (closed_) return;
-    events_.push_back({events_.size() + 1, type, std::move(data), std::chrono::system_clock::now()});
-  }
-  changed_.notify_all();
+void NewEvents::append(const std::string& type, nlohmann::ordered_json data) {
+  events_.push_back({last_ + events_.size() + 1, type, std::move(data), std::chrono::system_clock::now()});
+}
+
+void EventLog::publish(const std::vector<Event>& events, bool last) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return;
+  events_.insert(events_.end(), events.begin(), events.end());
+  closed_ = last;
+  tell_all();
 }
 
 void EventLog::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  changed_.notify_all();
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  tell_all();
 }
 
 void EventLog::interrupt() {
-  {
-    const std::lock_guard lock(mutex_);
-    interrupted_ = true;
-  }
+  const std::lock_guard lock(mutex_);
+  interrupted_ = true;
+  tell_all();
+}
+
+void EventLog::tell_all() const {
   changed_.notify_all();
+  for (const auto& [number, wake] : watches_) wake();
+}
+
+std::shared_ptr<void> EventLog::watch(std::function<void()> wake) const {
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t number = ++last_watch_;
+  watches_[number] = std::move(wake);
+  return {nullptr, [this, number](std::nullptr_t) {  // whoever watches holds the log as well
+            const std::lock_guard again(mutex_);
+            watches_.erase(number);
+          }};
+}
+
+std::uint64_t EventLog::size() const {
+  const std::lock_guard lock(mutex_);
+  return events_.size();
 }
 
 bool EventLog::interrupted() const {
@@ -38,7 +57,7 @@ bool EventLog::interrupted() const {
 EventLog::Batch EventLog::read_locked(std::uint64_t after, std::size_t most) const {
   Batch batch;
   const std::size_t first = static_cast<std::size_t>(std::min<std::uint64_t>(after, events_.size()));
-  const std::size_t last = std::min(events_.size(), first + most);
+  const std::size_t last = first + std::min(events_.size() - first, most);
   batch.events.assign(events_.begin() + static_cast<std::ptrdiff_t>(first),
                       events_.begin() + static_cast<std::ptrdiff_t>(last));
   batch.ended = closed_ && last == events_.size();

@@ -4,6 +4,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,12 +23,30 @@ struct Event {
   WallTime time;
 };
 
+/// Events on their way into a log: numbered, but not yet to be seen.
+class NewEvents {
+ public:
+  explicit NewEvents(std::uint64_t last) : last_(last) {}
+  void append(const std::string& type, nlohmann::ordered_json data);
+  void close() { closed_ = true; }  // no event will follow
+  [[nodiscard]] const std::vector<Event>& list() const { return events_; }
+  [[nodiscard]] bool closed() const { return closed_; }
+
+ private:
+  std::uint64_t last_;
+  std::vector<Event> events_;
+  bool closed_ = false;
+};
+
 /// What happened to one job, in order; kept whole, so that a client that comes late or back misses nothing.
 /// Safe to use from several threads.
 class EventLog {
  public:
-  /// Nothing is added after close().
-  void append(const std::string& type, nlohmann::ordered_json data);
+  EventLog() = default;
+  EventLog(std::vector<Event> earlier, bool closed) : events_(std::move(earlier)), closed_(closed) {}
+
+  /// Shows them, and that they were the last. Nothing is added after that.
+  void publish(const std::vector<Event>& events, bool last);
 
   /// The job has ended or was removed: no event will follow.
   void close();
@@ -41,15 +62,22 @@ class EventLog {
   /// Waits until there is one, the log is closed, or the deadline passes.
   [[nodiscard]] Batch wait(std::uint64_t after, std::size_t most, std::chrono::steady_clock::time_point deadline) const;
 
+  /// `wake` is called, under the log's lock, whenever wait() would return; until the result is gone.
+  [[nodiscard]] std::shared_ptr<void> watch(std::function<void()> wake) const;
+
   /// Lets every wait() return now and from now on: the service stops.
   void interrupt();
   [[nodiscard]] bool interrupted() const;
+  [[nodiscard]] std::uint64_t size() const;
 
  private:
+  void tell_all() const;
   [[nodiscard]] Batch read_locked(std::uint64_t after, std::size_t most) const;
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
+  mutable std::uint64_t last_watch_ = 0;
+  mutable std::map<std::uint64_t, std::function<void()>> watches_;
   std::vector<Event> events_;
   bool closed_ = false, interrupted_ = false;
 };

@@ -101,6 +101,7 @@ Json summary_to_json(const JobSummary& job) {
   return {{"id", job.id},
           {"state", name_of(job.state)},
           {"cancel_requested", job.cancel_requested},
+          {"starts", job.starts},
           {"created", rfc3339(job.created)},
           {"started", time_or_null(job.started)},
           {"finished", time_or_null(job.finished)},

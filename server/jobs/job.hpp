@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -28,9 +29,11 @@ struct StoredFile {
   std::string sha256;
 };
 
+using StoredFilePtr = std::shared_ptr<const StoredFile>;  // jobs are copied often, their files' names seldom change
+
 struct Frame {
   std::int64_t number = 0;
-  std::optional<StoredFile> exr, png;  // exr is there once the frame is rendered
+  StoredFilePtr exr, png;  // exr is there once the frame is rendered
   double wall_ms = 0;
 };
 
@@ -48,6 +51,8 @@ struct JobSummary {
   bool cancel_requested = false;
   WallTime created{};
   std::optional<WallTime> started, finished, expires;
+  std::uint64_t starts = 0;            // of its worker
+  std::uint64_t fruitless_starts = 0;  // of them, since the last new frame
 
   std::string scene_file;  // within the job's scene folder
   std::uint64_t scene_bytes = 0;

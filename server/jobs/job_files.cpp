@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "util/ids.hpp"
 #include "util/log.hpp"
 #include "util/sha256.hpp"
 
@@ -31,6 +32,17 @@ Fd open_regular(const fs::path& path, std::uint64_t& bytes) {
   if (!fd.valid() || ::fstat(fd.get(), &info) != 0 || !S_ISREG(info.st_mode)) return Fd();
   bytes = static_cast<std::uint64_t>(info.st_size);
   return fd;
+}
+
+void sync(const fs::path& path, int flags) {
+  const Fd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | flags));
+  if (!fd.valid() || ::fsync(fd.get()) != 0) throw io_error(path.string(), std::strerror(errno));
+}
+
+void sync_tree(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    sync(entry.path(), entry.is_directory() ? O_DIRECTORY : 0);
+  sync(folder, O_DIRECTORY);
 }
 
 }  // namespace
@@ -57,8 +69,18 @@ fs::path JobFiles::receive(const std::string& id) const {
 void JobFiles::accept(const std::string& id) const {
   std::error_code error;
   fs::create_directory(data_ / "incoming" / id / "frames", error);
+  if (!error) sync_tree(data_ / "incoming" / id);
   if (!error) fs::rename(data_ / "incoming" / id, folder(id), error);
   if (error) throw io_error(folder(id).string(), error.message());
+  sync(data_ / "jobs", O_DIRECTORY);
+}
+
+void JobFiles::remove_strangers(const std::function<bool(const std::string& id)>& known) const {
+  std::vector<std::string> strangers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data_ / "jobs"))
+    if (is_id(entry.path().filename().string()) && !known(entry.path().filename().string()))
+      strangers.push_back(entry.path().filename().string());
+  for (const std::string& id : strangers) remove(id);
 }
 
 void JobFiles::remove(const std::string& id) const noexcept {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,7 +27,12 @@ class JobFiles {
 
   /// A new empty folder for an upload, with a scene folder in it.
   [[nodiscard]] std::filesystem::path receive(const std::string& id) const;
+
+  /// Makes a received upload a job's folder. Everything is on the disk when this returns.
   void accept(const std::string& id) const;
+
+  /// Removes the folders of jobs that `known` does not know: half accepted or half removed when the service ended.
+  void remove_strangers(const std::function<bool(const std::string& id)>& known) const;
 
   /// Removes the job's folder and upload; what cannot be removed is logged.
   void remove(const std::string& id) const noexcept;

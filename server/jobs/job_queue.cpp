@@ -43,6 +43,11 @@ std::size_t JobQueue::waiting() const {
   return waiting_.size();
 }
 
+std::string JobQueue::next() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.empty() ? "" : waiting_.front();
+}
+
 void JobQueue::shut_down() {
   {
     const std::lock_guard lock(mutex_);

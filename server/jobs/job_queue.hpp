@@ -31,6 +31,7 @@ class JobQueue {
 
   [[nodiscard]] bool is_running(const std::string& id) const;
   [[nodiscard]] std::size_t waiting() const;
+  [[nodiscard]] std::string next() const;  // to be run; empty if none waits
   [[nodiscard]] std::size_t at_once() const { return threads_.size(); }
 
   /// Starts nothing more, stops every worker, returns when they are gone.

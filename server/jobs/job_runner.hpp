@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One job through one worker process: the command line, the worker's events into the job, the end into a state.
+// One job through its worker processes, most often one: the command line, and what an end of theirs means.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "jobs/confinement.hpp"
 #include "jobs/counters.hpp"
+#include "jobs/job_change.hpp"
 #include "jobs/job_files.hpp"
 #include "jobs/job_store.hpp"
 #include "jobs/limits.hpp"
@@ -20,6 +22,9 @@ struct RunnerOptions {
   std::chrono::milliseconds grace{5000};       // from SIGTERM to SIGKILL
   std::chrono::seconds retention{7 * 86'400};  // a finished job's stay; 0: for ever
   std::uint64_t log_bytes = Limits{}.log_bytes;
+  std::chrono::seconds wall{7 * 86'400};  // a worker's time; 0: any
+  ConfinementOptions confinement;
+  std::uint64_t attempts = 3;  // a worker's starts without a new frame, when it was not the scene that ended them
 };
 
 class JobRunner {
@@ -34,7 +39,9 @@ class JobRunner {
 
  private:
   [[nodiscard]] std::vector<std::string> command_of(const Job& job) const;
-  void run_started(const Job& job, const StopSwitch& stop) const;
+  [[nodiscard]] std::optional<Job> begin(const std::string& id, bool again) const;
+  [[nodiscard]] struct Ending run_worker_of(const Job& job, const StopSwitch& stop) const;
+  bool attempt(const Job& job, const StopSwitch& stop) const;
   void conclude(const std::string& id, const struct Outcome& outcome) const;
 
   RunnerOptions options_;
@@ -42,9 +49,5 @@ class JobRunner {
   const JobFiles& files_;
   Counters& counters_;
 };
-
-/// Sets the end's state, times and expiry, tells the watchers, closes the event log.
-void finish_job(Job& job, EventLog& events, JobState state, std::optional<Failure> failure,
-                std::chrono::seconds retention);
 
 }  // namespace sheaf::server

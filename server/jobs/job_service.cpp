@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "jobs/job_service.hpp"
 
+#include <algorithm>
+
 #include "http/problem.hpp"
+#include "jobs/frame_collection.hpp"
+#include "jobs/outcome.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
 
@@ -48,32 +52,88 @@ void JobService::check_capacity() const {
         .header("Retry-After", "10")
         .member("limit", options_.limits.queued_jobs)
         .member("value", waiting);
+  if (const auto trouble = store_.trouble()) throw Problem(ProblemKind::storage, *trouble).header("Retry-After", "30");
   const std::uint64_t free = files_.free_bytes();
   if (free < options_.least_free_bytes)
     throw Problem(ProblemKind::storage, "the disk has " + std::to_string(free >> 20) +
                                             " MiB left, jobs are taken from " +
                                             std::to_string(options_.least_free_bytes >> 20) + " MiB on")
-        .header("Retry-After", "60");
+        .header("Retry-After", "60")
+        .member("limit", options_.least_free_bytes)
+        .member("value", free);
 }
 
-Submitted JobService::submit(Job job, const Idempotency& idempotency) {
-  check_capacity();
+JobService::Fitness JobService::fitness() {
+  Fitness fitness;
+  if (stopping_) fitness.queue = "the service is stopping";
+  const std::uint64_t waiting = queue_->waiting(), limit = options_.limits.queued_jobs;
+  queue_was_full_ = waiting >= limit || (queue_was_full_ && waiting + std::max<std::uint64_t>(1, limit / 10) > limit);
+  if (queue_was_full_)
+    fitness.queue = std::to_string(waiting) + " jobs are waiting, the limit is " + std::to_string(limit);
+  const std::uint64_t free = files_.free_bytes(), least = options_.least_free_bytes;
+  disk_was_low_ = free < least || (disk_was_low_ && free < least + least / 10);
+  if (disk_was_low_)
+    fitness.disk = "the disk has " + std::to_string(free >> 20) + " MiB left, jobs are taken from " +
+                   std::to_string(least >> 20) + " MiB on";
+  if (const auto trouble = store_.trouble()) fitness.disk = *trouble;
+  return fitness;
+}
+
+void JobService::recover(bool fresh) {
+  if (!fresh)
+    files_.remove_strangers([this](const std::string& id) { return store_.presence(id) == Presence::present; });
+  std::size_t taken_up = 0;
+  for (const std::string& id : store_.unfinished()) {
+    if (!take_up(id)) continue;
+    queue_->add(id);
+    ++taken_up;
+  }
+  if (taken_up > 0) write_log(LogLevel::info, "jobs taken up", {{"jobs", taken_up}});
+}
+
+/// A job of an earlier run: back into the queue if it can still be rendered.
+bool JobService::take_up(const std::string& id) {
+  bool wanted = false;
+  const std::optional<Job> job = store_.find(id);
+  std::error_code error;
+  const bool whole = job && std::filesystem::exists(files_.scene(id) / job->scene_file, error);
+  const std::chrono::seconds retention = options_.runner.retention;
+  store_.update(id, [&](Job& stored, NewEvents& events) {
+    if (stored.cancel_requested) return finish_job(stored, events, JobState::cancelled, std::nullopt, retention);
+    if (!whole) return finish_job(stored, events, JobState::failed, outcome_of_lost_files().failure, retention);
+    if (stored.fruitless_starts >= options_.runner.attempts)
+      return finish_job(stored, events, JobState::failed, outcome_of_too_many_starts(stored.fruitless_starts).failure,
+                        retention);
+    wanted = true;
+    if (stored.state == JobState::running) requeue_job(stored, events);
+  });
+  return wanted;
+}
+
+Submitted JobService::submit(Job job, const Idempotency& idempotency, const std::string& request) {
   const std::string id = job.id;
-  files_.accept(id);
-  const Submitted submitted = store_.insert(std::move(job), idempotency);
+  Submitted submitted;
+  try {
+    check_capacity();
+    files_.accept(id);
+    submitted = store_.insert(std::move(job), idempotency);
+  } catch (...) {
+    files_.remove(id);
+    throw;
+  }
   if (submitted.kind != Submitted::Kind::created) {
     files_.remove(id);
     return submitted;
   }
   ++counters_.jobs_accepted;
   queue_->add(id);
-  write_log(LogLevel::info, "job accepted", {{"job", id}});
+  write_log(LogLevel::info, "job accepted", {{"job", id}, {"request", request}});
   return submitted;
 }
 
 void JobService::refuse_missing(const std::string& id) const {
   if (store_.presence(id) == Presence::removed)
-    throw Problem(ProblemKind::job_removed, "job " + id + " was removed or has expired");
+    throw Problem(ProblemKind::job_removed, "job " + id + " " + store_.removal_reason(id));
   throw Problem(ProblemKind::unknown_job, "there is no job '" + id + "'");
 }
 
@@ -90,8 +150,8 @@ std::shared_ptr<EventLog> JobService::events(const std::string& id) const {
 }
 
 /// False if there is nothing to be done: the job has ended, or was asked before.
-bool JobService::ask_to_stop(Job& job, EventLog& events) {
-  if (is_finished(job.state) || job.cancel_requested) return false;
+bool JobService::ask_to_stop(Job& job, NewEvents& events) {
+  if (job.cancel_requested) return false;
   job.cancel_requested = true;
   if (job.state == JobState::queued) {
     finish_job(job, events, JobState::cancelled, std::nullopt, options_.runner.retention);
@@ -101,40 +161,41 @@ bool JobService::ask_to_stop(Job& job, EventLog& events) {
 }
 
 Job JobService::cancel(const std::string& id) {
-  std::optional<Job> found;
-  store_.update(id, [&](Job& job, EventLog& events) {
-    ask_to_stop(job, events);
-    found = job;
-  });
-  if (!found) refuse_missing(id);
-  if (found->cancel_requested) {
+  const bool there = store_.update(
+      id, [&](Job& job, NewEvents& events) { ask_to_stop(job, events); }, IfUnstored::refuse);
+  if (there) {
     queue_->forget(id);
     queue_->stop_worker(id, false);
   }
-  return *std::move(found);
+  return get(id);
 }
 
 std::optional<Job> JobService::cancel_or_remove(const std::string& id) {
-  std::optional<Job> cancelled;
-  const bool there = store_.update(id, [&](Job& job, EventLog& events) {
-    if (ask_to_stop(job, events)) cancelled = job;
-  });
-  if (!there) refuse_missing(id);
-  if (!cancelled) {
-    remove(id);
+  bool asked = false;
+  std::optional<Job> job;
+  store_.update(
+      id,
+      [&](Job& stored, NewEvents& events) {
+        asked = ask_to_stop(stored, events);
+        job = stored;
+      },
+      IfUnstored::refuse);
+  if (!asked) {
+    remove(id, "was removed");
     return std::nullopt;
   }
   queue_->forget(id);
   queue_->stop_worker(id, false);
-  return cancelled;
+  return job;
 }
 
 /// The files of a job whose worker still runs go when the worker has gone.
-void JobService::remove(const std::string& id) {
-  if (!store_.remove(id)) refuse_missing(id);
+void JobService::remove(const std::string& id, const std::string& reason) {
+  if (!store_.remove(id, reason)) refuse_missing(id);
+  queue_->forget(id);
   queue_->stop_worker(id, true);
   if (!queue_->is_running(id)) files_.remove(id);
-  write_log(LogLevel::info, "job removed", {{"job", id}});
+  write_log(LogLevel::info, "job removed", {{"job", id}, {"reason", reason}});
 }
 
 void JobService::worker_gone(const std::string& id) {
@@ -142,12 +203,21 @@ void JobService::worker_gone(const std::string& id) {
 }
 
 void JobService::remove_expired() {
-  for (const std::string& id : store_.expired(std::chrono::system_clock::now())) {
-    try {
-      remove(id);
-    } catch (const Problem&) {
-      // A client removed it first.
+  const auto remove_all = [this](const std::vector<std::string>& ids, const std::string& reason) {
+    for (const std::string& id : ids) {
+      try {
+        remove(id, reason);
+      } catch (const Problem&) {
+        // A client removed it first.
+      }
     }
+  };
+  try {
+    (void)store_.trouble();  // stores what could not be stored
+    remove_all(store_.expired(std::chrono::system_clock::now()), "has expired");
+    if (options_.kept_bytes > 0) remove_all(store_.beyond(options_.kept_bytes), "was removed to make room for others");
+  } catch (const std::exception& error) {
+    write_log(LogLevel::error, "cannot remove expired jobs", {{"reason", error.what()}});
   }
 }
 

@@ -19,6 +19,7 @@ namespace sheaf::server {
 
 struct ServiceOptions {
   RunnerOptions runner;
+  std::uint64_t kept_bytes = 0;  // of all jobs: beyond it, ended ones go, the earliest first; 0: no limit
   Limits limits;
   std::size_t jobs_at_once = 1;
   std::uint64_t least_free_bytes = std::uint64_t{256} << 20;  // no new job is taken with less disk than this
@@ -34,8 +35,19 @@ class JobService {
   /// Throws Problem (503) if no job can be taken now: asked before an upload is read, and again at its end.
   void check_capacity() const;
 
+  /// "ok" or the reason why no job should be sent here. What failed once must be well again by a margin: a service at
+  /// its limit does not change its mind with every job.
+  struct Fitness {
+    std::string disk = "ok", queue = "ok";
+  };
+  [[nodiscard]] Fitness fitness();
+
+  /// Takes up the jobs of an earlier run. To be called once, before the first request. `fresh`: the store is new, so
+  /// that folders it does not know need not be rubbish.
+  void recover(bool fresh);
+
   /// Takes an upload that was received under `job.id`. On `repeated` and `conflict` the upload is thrown away.
-  Submitted submit(Job job, const Idempotency& idempotency);
+  Submitted submit(Job job, const Idempotency& idempotency, const std::string& request);
 
   /// Throws Problem: 404, or 410 for a job that was there.
   [[nodiscard]] Job get(const std::string& id) const;
@@ -60,9 +72,10 @@ class JobService {
   [[nodiscard]] bool stopping() const { return stopping_; }
 
  private:
-  bool ask_to_stop(Job& job, EventLog& events);
+  bool ask_to_stop(Job& job, NewEvents& events);
+  bool take_up(const std::string& id);
   [[noreturn]] void refuse_missing(const std::string& id) const;
-  void remove(const std::string& id);
+  void remove(const std::string& id, const std::string& reason);
   void worker_gone(const std::string& id);
   void remove_expired();
 
@@ -71,7 +84,7 @@ class JobService {
   const JobFiles& files_;
   Counters counters_;
   JobRunner runner_;
-  std::atomic<bool> stopping_{false};
+  std::atomic<bool> stopping_{false}, queue_was_full_{false}, disk_was_low_{false};
   std::mutex mutex_;
   std::condition_variable stopped_;
   std::unique_ptr<JobQueue> queue_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where jobs are kept. The service uses nothing but this interface, so that what is behind it can outlive the process.
-// Every call is atomic and safe from any thread.
+// Where jobs are kept. The service uses nothing but this interface. Every call is atomic and safe from any thread; what
+// it changes is on the disk before anybody can see it.
 #pragma once
 
 #include <functional>
@@ -38,6 +38,10 @@ struct JobPage {
 
 enum class Presence { unknown, present, removed };
 
+/// What to do with a change that cannot be stored now. `keep`: it holds as long as the process does, and is stored as
+/// soon as that works again (a worker's news, which cannot be taken back). `refuse`: Error{io}, and nothing changes.
+enum class IfUnstored { keep, refuse };
+
 class JobStore {
  public:
   virtual ~JobStore() = default;
@@ -47,21 +51,32 @@ class JobStore {
 
   [[nodiscard]] virtual std::optional<Job> find(const std::string& id) const = 0;
   [[nodiscard]] virtual Presence presence(const std::string& id) const = 0;
+  [[nodiscard]] virtual std::string removal_reason(const std::string& id) const = 0;
   [[nodiscard]] virtual JobPage list(const JobQuery& query) const = 0;
   [[nodiscard]] virtual std::map<JobState, std::uint64_t> count() const = 0;
 
-  /// Runs `change` on the job under the store's lock; false if it is not there. `change` may add to `events`.
-  using Change = std::function<void(Job& job, EventLog& events)>;
-  virtual bool update(const std::string& id, const Change& change) = 0;
+  /// Queued and running ones, in order of submission.
+  [[nodiscard]] virtual std::vector<std::string> unfinished() const = 0;
+
+  /// Runs `change` on an unfinished job, one change at a time; false if it is not there or has ended. `change` may add
+  /// to `events`.
+  using Change = std::function<void(Job& job, NewEvents& events)>;
+  virtual bool update(const std::string& id, const Change& change, IfUnstored unstored = IfUnstored::keep) = 0;
 
   /// The job's events: shared, and still readable after the job was removed.
   [[nodiscard]] virtual std::shared_ptr<EventLog> events(const std::string& id) const = 0;
 
   /// Takes the job out and remembers that it was there. False if it is not there.
-  virtual bool remove(const std::string& id) = 0;
+  virtual bool remove(const std::string& id, const std::string& reason) = 0;
 
   /// Jobs whose time is over at `now`.
   [[nodiscard]] virtual std::vector<std::string> expired(WallTime now) const = 0;
+
+  /// Ended jobs, the earliest first, without which the kept ones have at most `bytes`.
+  [[nodiscard]] virtual std::vector<std::string> beyond(std::uint64_t bytes) const = 0;
+
+  /// Why nothing can be stored; nothing if all is well. Tries again to store what could not be.
+  virtual std::optional<std::string> trouble() = 0;
 
   /// Lets everybody who waits for events go: the service stops.
   virtual void interrupt_waits() = 0;

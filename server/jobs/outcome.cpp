@@ -38,6 +38,12 @@ Outcome outcome_of(const Ending& ending) {
   // Whatever a worker did after it was told to stop, the client asked for this end.
   if (ending.cancel_requested) return {JobState::cancelled, std::nullopt};
 
+  if (ending.worker.timed_out)
+    return {JobState::failed, failure(row_of(5), "the worker ran longer than --max-wall allows: " +
+                                                     std::to_string(ending.wall.count()) + " s")};
+  if (ending.worker.signal == SIGXCPU)
+    return {JobState::failed, failure(row_of(5), "the worker took more processor time than --max-cpu allows: " +
+                                                     std::to_string(ending.cpu_seconds) + " s")};
   if (ending.worker.signal) {
     const int number = *ending.worker.signal;
     Failure reason = failure({"worker-crashed", "The worker crashed"},
@@ -57,6 +63,26 @@ Outcome outcome_of(const Ending& ending) {
       row_of(code), ending.message.empty() ? "worker ended with exit code " + std::to_string(code) : ending.message);
   reason.exit_code = code;
   return {JobState::failed, reason};
+}
+
+bool is_passing(const Ending& ending) {
+  if (ending.worker.timed_out) return false;
+  if (ending.worker.signal) {
+    const int number = *ending.worker.signal;
+    return number == SIGKILL || number == SIGTERM || number == SIGINT || number == SIGHUP;
+  }
+  const int code = ending.worker.exit_code.value_or(0);
+  return code == 4 || code == 128 + SIGINT || code == 128 + SIGTERM;
+}
+
+Outcome outcome_of_too_many_starts(std::uint64_t starts) {
+  return {JobState::failed, failure({"interrupted", "The worker was interrupted"},
+                                    "the worker was started " + std::to_string(starts) +
+                                        " times without a new frame, and never came to an end")};
+}
+
+Outcome outcome_of_lost_files() {
+  return {JobState::failed, failure({"storage", "Reading or writing failed"}, "the scene is gone from the disk")};
 }
 
 Outcome outcome_of_no_start(const std::string& reason) {

@@ -2,6 +2,7 @@
 // What a worker's end means for its job. The one place where exit codes and signals become states and problem types.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,8 @@ namespace sheaf::server {
 /// What is known when the worker has ended.
 struct Ending {
   WorkerEnding worker;
+  std::chrono::seconds wall{0};  // its limits
+  std::uint64_t cpu_seconds = 0;
   bool cancel_requested = false;
   std::string message;        // the worker's last word: its error event, else its last log line
   std::uint64_t missing = 0;  // frames that should be there and are not
@@ -25,6 +28,16 @@ struct Outcome {
 };
 
 [[nodiscard]] Outcome outcome_of(const Ending& ending);
+
+/// The end may well have had nothing to do with the job: a lost device, or a stop or kill from outside (as by a kernel
+/// that is out of memory). A crash is the scene's own.
+[[nodiscard]] bool is_passing(const Ending& ending);
+
+/// The service or the worker ended too often to try again.
+[[nodiscard]] Outcome outcome_of_too_many_starts(std::uint64_t starts);
+
+/// What the job is rendered from is gone from the disk.
+[[nodiscard]] Outcome outcome_of_lost_files();
 
 /// The worker could not be started at all.
 [[nodiscard]] Outcome outcome_of_no_start(const std::string& reason);

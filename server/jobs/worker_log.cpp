@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 
 namespace sheaf::server {
@@ -25,7 +27,10 @@ void write_all(const Fd& file, std::string_view bytes) {
 WorkerLog::WorkerLog(const std::filesystem::path& path, std::uint64_t limit, std::string hidden)
     : file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600)),
       left_(limit),
-      hidden_(std::move(hidden)) {}
+      hidden_(std::move(hidden)) {
+  const off_t there = file_.valid() ? ::lseek(file_.get(), 0, SEEK_END) : 0;  // of an earlier worker
+  left_ -= std::min(left_, static_cast<std::uint64_t>(std::max<off_t>(there, 0)));
+}
 
 void WorkerLog::end() {
   if (!partial_.empty()) line(partial_);

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/eventfd.h>
 #include <sys/wait.h>
 
@@ -15,8 +14,7 @@
 #include <thread>
 
 #include "core/error.hpp"
-
-extern char** environ;
+#include "jobs/worker_spawn.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -39,43 +37,13 @@ Pipe make_pipe() {
   return pipe;
 }
 
-/// stdin from /dev/null, no descriptor of the service, default signals, a group of its own.
-pid_t spawn(const std::vector<std::string>& command, const Fd& out, const Fd& err) {
-  std::vector<char*> arguments;
-  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
-
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawnattr_init(&attributes);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_adddup2(&actions, out.get(), STDOUT_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, err.get(), STDERR_FILENO);
-  ::posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-  sigset_t none, all;
-  ::sigemptyset(&none);
-  ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&attributes, &none);
-  ::posix_spawnattr_setsigdefault(&attributes, &all);
-  ::posix_spawnattr_setpgroup(&attributes, 0);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-
-  pid_t pid = 0;
-  const int error = ::posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
-  ::posix_spawnattr_destroy(&attributes);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw io_error(command[0], std::string("cannot be started: ") + std::strerror(error));
-  return pid;
-}
-
 class Worker {
  public:
   Worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
-         std::chrono::milliseconds grace)
-      : output_(output), stop_(stop), grace_(grace) {
+         const WorkerBounds& bounds)
+      : output_(output), stop_(stop), bounds_(bounds), overdue_(Clock::now() + bounds.wall) {
     Pipe out = make_pipe(), err = make_pipe();
-    pid_ = spawn(command, out.write, err.write);
+    pid_ = spawn_worker(command, out.write, err.write, bounds.confinement);
     out_ = std::move(out.read);
     err_ = std::move(err.read);
   }
@@ -113,14 +81,16 @@ class Worker {
     while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
     }
     reaped_ = true;
-    if (WIFSIGNALED(status)) return {std::nullopt, WTERMSIG(status)};
-    return {WEXITSTATUS(status), std::nullopt};
+    if (WIFSIGNALED(status)) return {std::nullopt, WTERMSIG(status), timed_out_};
+    return {WEXITSTATUS(status), std::nullopt, timed_out_};
   }
 
   void obey() {
-    if (stop_.asked() && !kill_at_) {
+    const bool overdue = bounds_.wall.count() > 0 && Clock::now() >= overdue_;
+    if ((stop_.asked() || overdue) && !kill_at_) {
+      timed_out_ = !stop_.asked();
       if (!stop_.forced()) ::kill(-pid_, SIGTERM);
-      kill_at_ = Clock::now() + grace_;
+      kill_at_ = Clock::now() + bounds_.grace;
     }
     if (kill_at_ && (stop_.forced() || Clock::now() >= *kill_at_)) ::kill(-pid_, SIGKILL);
   }
@@ -162,7 +132,9 @@ class Worker {
 
   const WorkerOutput& output_;
   const StopSwitch& stop_;
-  std::chrono::milliseconds grace_;
+  const WorkerBounds& bounds_;
+  Clock::time_point overdue_;
+  bool timed_out_ = false;
   pid_t pid_ = 0;
   bool reaped_ = false;
   int waits_for_exit_ = 0;
@@ -188,8 +160,8 @@ void StopSwitch::ask() { raise_to(1); }
 void StopSwitch::force() { raise_to(2); }
 
 WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
-                        std::chrono::milliseconds grace) {
-  return Worker(command, output, stop, grace).run();
+                        const WorkerBounds& bounds) {
+  return Worker(command, output, stop, bounds).run();
 }
 
 std::string signal_name(int number) {

@@ -34,6 +34,7 @@ class StopSwitch {
 
 struct WorkerEnding {
   std::optional<int> exit_code, signal;  // one of them
+  bool timed_out = false;                // it was stopped because its time was over
 };
 
 struct WorkerOutput {
@@ -41,9 +42,17 @@ struct WorkerOutput {
   std::function<void(std::string_view bytes)> log;  // of stderr
 };
 
+class Confinement;
+
+struct WorkerBounds {
+  std::chrono::milliseconds grace{5000};     // from SIGTERM to SIGKILL
+  std::chrono::seconds wall{0};              // how long it may run; 0: any time
+  const Confinement* confinement = nullptr;  // none
+};
+
 /// Throws Error{io} if the program cannot be started.
 [[nodiscard]] WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output,
-                                      const StopSwitch& stop, std::chrono::milliseconds grace);
+                                      const StopSwitch& stop, const WorkerBounds& bounds);
 
 /// "SIGSEGV", or "signal 64".
 [[nodiscard]] std::string signal_name(int number);

@@ -3,6 +3,7 @@
 
 #include "http/problem.hpp"
 #include "routes/routes.hpp"
+#include "util/log.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -43,51 +44,80 @@ std::string as_sse(const Event& event) {
          "\ndata: " + data_of(event).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n\n";
 }
 
-/// Sends events until the job's last; false once the client is gone.
-bool stream_events(const EventLog& log, std::uint64_t after, std::chrono::milliseconds heartbeat, const Writer& write) {
-  if (!write("retry: 2000\n\n")) return false;
-  while (true) {
-    const EventLog::Batch batch = log.wait(after, batch_size, Clock::now() + heartbeat);
-    std::string text;
-    for (const Event& event : batch.events) text += as_sse(event);
-    if (!batch.events.empty()) after = batch.events.back().id;
-    const bool over = batch.ended || log.interrupted();
-    if (text.empty() && !over) text = ": keep-alive\n\n";
-    if (!text.empty() && !write(text)) return false;
-    if (over) return true;
-  }
-}
-
-Reply long_poll(RouteContext& context, const EventLog& log, std::uint64_t after, double seconds) {
-  const std::shared_ptr<void> slot = seconds > 0 ? context.streams.take() : nullptr;
-  const auto deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  const EventLog::Batch batch = log.wait(after, batch_size, deadline);
+nlohmann::ordered_json page_of(const EventLog::Batch& batch, std::uint64_t after) {
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   for (const Event& event : batch.events) {
     events.push_back({{"id", event.id}, {"event", event.type}, {"data", data_of(event)}});
     after = event.id;
   }
-  return json_reply(200, {{"events", std::move(events)}, {"last", after}, {"ended", batch.ended}});
+  return {{"events", std::move(events)}, {"last", after}, {"ended", batch.ended}};
+}
+
+/// What a client that waits holds: the events, where it is, its place among those that wait.
+struct Watcher {
+  std::shared_ptr<EventLog> log;
+  std::shared_ptr<void> slot;
+  std::uint64_t after = 0;
+  std::chrono::milliseconds heartbeat;
+  Clock::time_point due;
+  bool begun = false;
+
+  /// Server-sent events until the job's last.
+  bool stream(std::string& out) {
+    if (!begun) out += "retry: 2000\n\n";
+    begun = true;
+    const EventLog::Batch batch = log->read(after, batch_size);
+    for (const Event& event : batch.events) out += as_sse(event);
+    if (!batch.events.empty()) after = batch.events.back().id;
+    if (batch.ended || log->interrupted()) return false;
+    if (out.empty() && Clock::now() < due) return true;
+    if (out.empty()) out = ": keep-alive\n\n";
+    due = Clock::now() + heartbeat;
+    return true;
+  }
+
+  /// One page, as soon as there is an event or the time is over.
+  bool poll(std::string& out) {
+    const EventLog::Batch batch = log->read(after, batch_size);
+    if (batch.events.empty() && !batch.ended && !log->interrupted() && Clock::now() < due) return true;
+    out = dump_json(page_of(batch, after)) + "\n";
+    return false;
+  }
+};
+
+LastingBody lasting(const std::shared_ptr<Watcher>& watcher, bool (Watcher::*advance)(std::string&)) {
+  return {[watcher, advance](std::string& out) { return (*watcher.*advance)(out); }, [watcher] { return watcher->due; },
+          [watcher](std::function<void()> wake) { return watcher->log->watch(std::move(wake)); }};
+}
+
+Reply long_poll(RouteContext& context, const std::shared_ptr<EventLog>& log, std::uint64_t after, double seconds) {
+  const EventLog::Batch batch = log->read(after, batch_size);
+  if (!batch.events.empty() || batch.ended || seconds == 0) return json_reply(200, page_of(batch, after));
+  const auto wait = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  auto watcher = std::make_shared<Watcher>();
+  *watcher = {log, context.streams.take(), after, context.heartbeat, Clock::now() + wait, false};
+  Reply reply;
+  reply.content_type = "application/json";
+  reply.lasting = lasting(watcher, &Watcher::poll);
+  return reply;
 }
 
 Reply events(RouteContext& context, Request& request) {
   request.allow_arguments({"wait", "after"});
   const std::shared_ptr<EventLog> log = context.service.events(request.parameters["id"]);
   const std::uint64_t after = start_after(request);
-  if (const auto wait = request.argument("wait")) return long_poll(context, *log, after, wait_seconds(*wait));
+  if (const auto wait = request.argument("wait")) return long_poll(context, log, after, wait_seconds(*wait));
 
   Reply reply;
   if (log->read(after, 1).ended && log->read(after, 1).events.empty()) {
     reply.status = 204;  // tells an event source not to come back
     return reply;
   }
-  const std::shared_ptr<void> slot = context.streams.take();
+  auto watcher = std::make_shared<Watcher>();
+  *watcher = {log, context.streams.take(), after, context.heartbeat, Clock::now() + context.heartbeat, false};
   reply.content_type = "text/event-stream";
   reply.header("X-Accel-Buffering", "no");  // proxies pass events on at once
-  reply.stream = StreamBody{std::nullopt, [log, slot, after, heartbeat = context.heartbeat](const Writer& write) {
-                              return stream_events(*log, after, heartbeat, write);
-                            }};
+  reply.lasting = lasting(watcher, &Watcher::stream);
   return reply;
 }
 

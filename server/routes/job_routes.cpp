@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "http/problem.hpp"
@@ -26,7 +27,8 @@ Reply submit(RouteContext& context, Request& request) {
   context.service.check_capacity();
   Submission submission =
       receive_submission(random_id(), request, context.service.files(), context.service.options().limits);
-  const Submitted submitted = context.service.submit(std::move(submission.job), {key, submission.fingerprint});
+  const Submitted submitted =
+      context.service.submit(std::move(submission.job), {key, submission.fingerprint}, request.id);
   if (submitted.kind == Submitted::Kind::conflict)
     throw Problem(ProblemKind::idempotency_mismatch, "Idempotency-Key '" + key + "' belongs to job " + submitted.id +
                                                          ", which was submitted with another body");
@@ -96,7 +98,13 @@ void add_job_routes(Router& router, RouteContext& context) {
   router.add("POST", "/v1/jobs/{id}/cancel", [&context](Request& request) { return cancel(context, request); });
 }
 
-Reply handle(const Router& router, Request& request) {
+Reply handle(const Router& router, const Tokens& tokens, Request& request) {
+  // Probes have no tokens, the contract and the page hold nothing of anybody's, and OPTIONS tells what the contract
+  // does.
+  static constexpr std::array open{"/healthz", "/readyz", "/openapi.json", "/"};
+  const bool looks = request.method == "GET" || request.method == "HEAD";
+  const bool free = (looks && std::ranges::find(open, request.path) != open.end()) || request.method == "OPTIONS";
+  if (!free) request.client = tokens.authorize(request, looks ? Scope::read : Scope::submit);
   const bool changes = request.method == "POST" || request.method == "DELETE";
   // Browsers name the kind of site a request comes from; a stranger's page must not use a service on this machine.
   if (changes && request.header("Sec-Fetch-Site").value_or("same-origin") == "cross-site")

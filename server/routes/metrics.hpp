@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "http/http_server.hpp"
 #include "jobs/job_service.hpp"
@@ -18,17 +19,21 @@ class Metrics {
  public:
   void count(const ExchangeRecord& exchange);
 
-  /// Everything, with what `service` knows and the counts of streams and connections held now.
-  [[nodiscard]] std::string text(const JobService& service, std::size_t streams, std::size_t connections) const;
+  /// What is so at this moment, apart from the jobs.
+  struct Now {
+    std::size_t streams = 0, connections = 0;
+    bool device_ready = false;
+    std::vector<std::string> confinement;  // of workers: what holds
+  };
+
+  /// Everything, with what `service` knows.
+  [[nodiscard]] std::string text(const JobService& service, const Now& now) const;
 
  private:
-  // Upper bounds of the buckets of request times, in seconds.
-  static constexpr std::array bounds{0.001, 0.005, 0.01, 0.05, 0.1, 0.5, 1.0, 5.0, 30.0};
-
   mutable std::mutex mutex_;
   std::map<std::pair<std::string, int>, std::uint64_t> requests_;  // method, status
-  std::array<std::uint64_t, bounds.size() + 1> times_{};           // the last: above every bound
-  double seconds_ = 0;
+  std::map<std::string, std::uint64_t> refusals_;                  // by the problem's slug
+  Histogram times_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

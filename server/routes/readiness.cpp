@@ -8,6 +8,7 @@ namespace {
 
 constexpr auto retry_after = std::chrono::minutes(1);
 constexpr auto grace = std::chrono::seconds(2);
+constexpr auto longest = std::chrono::seconds(60);  // a driver that hangs is none
 constexpr std::size_t max_reason = 500;
 
 }  // namespace
@@ -48,7 +49,7 @@ DeviceProbe::Result DeviceProbe::probe() {
                               [&](std::string_view bytes) {
                                 if (complaint.size() < max_reason) complaint.append(bytes.substr(0, max_reason));
                               }};
-    const WorkerEnding ending = run_worker({sheaf_, "devices", "--json"}, output, stop_, grace);
+    const WorkerEnding ending = run_worker({sheaf_, "devices", "--json"}, output, stop_, {grace, longest, nullptr});
     if (ending.exit_code == 0) return {true, ""};
     const std::string line = complaint.substr(0, complaint.find('\n'));
     return {false, line.empty() ? "'sheaf devices' failed" : line};

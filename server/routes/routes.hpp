@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 
+#include "access/tokens.hpp"
 #include "http/router.hpp"
 #include "jobs/job_service.hpp"
 #include "routes/metrics.hpp"
@@ -19,6 +20,7 @@ struct RouteContext {
   Metrics& metrics;
   const DeviceProbe& device;
   std::function<std::size_t()> connections;     // open now
+  std::vector<std::string> confinement;         // measures that hold for workers
   std::chrono::milliseconds heartbeat{15'000};  // between comments on an idle event stream
 };
 
@@ -28,7 +30,8 @@ void add_event_routes(Router& router, RouteContext& context);    // event stream
 void add_result_routes(Router& router, RouteContext& context);   // frames, archive, stats, log
 void add_service_routes(Router& router, RouteContext& context);  // health, readiness, metrics, contract, page
 
-/// What every request passes: the routes, with a page of another site kept from submitting or removing jobs.
-[[nodiscard]] Reply handle(const Router& router, Request& request);
+/// What every request passes: the routes, with strangers kept out, and a page of another site kept from submitting or
+/// removing jobs.
+[[nodiscard]] Reply handle(const Router& router, const Tokens& tokens, Request& request);
 
 }  // namespace sheaf::server

@@ -11,27 +11,20 @@ Reply health(RouteContext&, Request&) { return json_reply(200, {{"status", "aliv
 /// Device, disk and queue, each "ok" or the reason why no job should be sent here.
 Reply readiness(RouteContext& context, Request&) {
   const DeviceProbe::Result device = context.device.result();
-  std::string capacity = "ok";
-  ProblemKind kind = ProblemKind::not_ready;
-  try {
-    context.service.check_capacity();
-  } catch (const Problem& problem) {
-    capacity = problem.detail();
-    kind = problem.kind();
-  }
-  const bool disk_low = kind == ProblemKind::storage;
-  const nlohmann::ordered_json checks{{"device", device.ready ? "ok" : device.reason},
-                                      {"disk", disk_low ? capacity : "ok"},
-                                      {"queue", disk_low ? "ok" : capacity}};
-  if (device.ready && capacity == "ok") return json_reply(200, {{"status", "ready"}, {"checks", checks}});
-  throw Problem(ProblemKind::not_ready, device.ready ? capacity : "device: " + device.reason)
-      .header("Retry-After", "10")
-      .member("checks", checks);
+  const JobService::Fitness fitness = context.service.fitness();
+  const nlohmann::ordered_json checks{
+      {"device", device.ready ? "ok" : device.reason}, {"disk", fitness.disk}, {"queue", fitness.queue}};
+  std::string trouble;
+  for (const auto& [name, found] : checks.items())
+    if (found != "ok") trouble += (trouble.empty() ? "" : "; ") + name + ": " + found.get<std::string>();
+  if (trouble.empty()) return json_reply(200, {{"status", "ready"}, {"checks", checks}});
+  throw Problem(ProblemKind::not_ready, trouble).header("Retry-After", "10").member("checks", checks);
 }
 
 Reply metrics(RouteContext& context, Request&) {
   return text_reply("text/plain; version=0.0.4; charset=utf-8",
-                    context.metrics.text(context.service, context.streams.used(), context.connections()));
+                    context.metrics.text(context.service, {context.streams.used(), context.connections(),
+                                                           context.device.result().ready, context.confinement}));
 }
 
 Reply contract(RouteContext&, Request&) { return text_reply("application/json", openapi_json); }

@@ -6,7 +6,9 @@ A .gltf's `extras.fake` may hold: `frames` (how many, where the command line nam
 for before it}), `exit` ({code, message} in place of an end), `signal` (to die by, before frame `at`), `stubborn`
 (ignores SIGTERM), `child` (leaves one behind that holds the pipes), `lines` (printed first, as they are), `flood` (MiB
 of noise on standard error), `warnings`, `silent_frames` (said to be done, but not there), `no_start`, `padding` (bytes
-in each frame).
+in each frame), `pace` (seconds each frame takes), `mute` (frames that are made and not reported), `until` (a file:
+`exit`, `signal` and `mute` are for as long as it is there). Every frame begun is noted in a file `ledger` in the job's
+folder.
 """
 
 import argparse
@@ -16,6 +18,7 @@ import pathlib
 import signal
 import struct
 import sys
+import time
 import zlib
 
 
@@ -26,6 +29,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--preview", action="store_true")
     parser.add_argument("--opaque", action="store_true")
+    parser.add_argument("--resume", action="store_true")
     for name in (
         "out",
         "stats",
@@ -115,6 +119,9 @@ def misbehave(fake: dict, frame: int | None) -> None:
 
 
 def prepare(fake: dict) -> None:
+    if "until" in fake and not os.path.exists(fake["until"]):
+        for key in ("exit", "signal", "mute"):
+            fake.pop(key, None)
     if fake.get("stubborn"):
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
     else:
@@ -128,11 +135,27 @@ def prepare(fake: dict) -> None:
         sys.stderr.write(("noise " * 20 + "\n") * 8666)
 
 
+def stem_of(options: argparse.Namespace, frame: int) -> str:
+    default = pathlib.Path(options.scene).stem + ".####.exr"
+    return (options.name or default).removesuffix(".exr").replace("####", f"{frame:04d}")
+
+
+def begin(fake: dict, out: pathlib.Path, frame: int) -> None:
+    """Waits for the frame's gate, notes it down, and takes its time."""
+    if str(frame) in fake.get("gates", {}):
+        open(fake["gates"][str(frame)], "rb").read()
+    with open(out.parent / "ledger", "a") as ledger:
+        ledger.write(f"{frame}\n")
+    time.sleep(fake.get("pace", 0))
+
+
 def render(options: argparse.Namespace) -> None:
     fake = behaviour(options.scene)
     prepare(fake)
     out = pathlib.Path(options.out)
     wanted = numbers(options.frames, fake.get("frames", 3))
+    if options.resume:
+        wanted = [frame for frame in wanted if not (out / (stem_of(options, frame) + ".exr")).exists()]
     if not fake.get("no_start"):
         say(event="start", frames=len(wanted))
     print(f"rendering {options.scene}", file=sys.stderr, flush=True)
@@ -140,15 +163,14 @@ def render(options: argparse.Namespace) -> None:
         say(event="warning", message=message)
     stats = []
     for done, frame in enumerate(wanted, 1):
-        if str(frame) in fake.get("gates", {}):
-            open(fake["gates"][str(frame)], "rb").read()
+        begin(fake, out, frame)
         misbehave(fake, frame)
-        stem = (options.name or "frame.####.exr").removesuffix(".exr").replace("####", f"{frame:04d}")
+        stem = stem_of(options, frame)
         if frame not in fake.get("silent_frames", []):
             body = json.dumps({"frame": frame, "arguments": sys.argv[1:]}).encode() + b"\0" * fake.get("padding", 0)
-            put(out / (stem + ".exr"), b"v/1\x01" + body)
             if options.preview:
                 put(out / (stem + ".png"), png(frame))
+            put(out / (stem + ".exr"), b"v/1\x01" + body)
         stats.append(
             {
                 "frame": frame,
@@ -160,6 +182,8 @@ def render(options: argparse.Namespace) -> None:
                 "tests": {"brute_force": 8, "ray_triangle": {"primary": 2}},
             }
         )
+        if frame in fake.get("mute", []):
+            continue
         say(
             event="frame",
             frame=frame,

@@ -10,6 +10,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 
@@ -34,12 +35,22 @@ class Service:
     """`sheafd` on a port of the system's choice; its log is kept for a test that fails."""
 
     def __init__(
-        self, data: pathlib.Path, *options: str, sheaf: pathlib.Path = FAKE, env: dict[str, str] | None = None
+        self,
+        data: pathlib.Path,
+        *options: str,
+        sheaf: pathlib.Path = FAKE,
+        env: dict[str, str] | None = None,
+        prefix: list[str] | None = None,
+        readable: list[str] | None = None,
     ):
         self.data = data
         free = [] if "--min-free" in options else ["--min-free", "0"]  # whatever the machine's disk
+        # The fake worker is a Python program, and keeps ledgers and gates beside the service's data.
+        places = readable or [sys.base_prefix, HERE, data.parent]
+        seen = [word for place in places for word in ("--worker-reads", str(place))]
         self.process = subprocess.Popen(
-            [program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, *free, *options],
+            [*(prefix or []), program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf]
+            + [*free, *seen, *options],
             stderr=subprocess.PIPE,
             text=True,
             env={**os.environ, **(env or {})},

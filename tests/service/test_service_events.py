@@ -2,7 +2,11 @@
 """Watching jobs: event streams and long polls."""
 
 import json
+import pathlib
+import resource
+import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 
 import httpx
@@ -106,7 +110,7 @@ def test_long_poll(sheafd: Service, gate: Gate) -> None:
 
 
 def test_watchers_are_bounded_and_do_not_starve_others(start: Callable[..., Service], gate: Gate) -> None:
-    service = start("--max-streams", "3", "--http-threads", "4", "--heartbeat", "0.05")
+    service = start("--max-streams", "3", "--http-threads", "2", "--heartbeat", "0.05")
     job = service.accepted(gltf(gates={"0": gate.path}), {"frames": 0})
     streams = [httpx.stream("GET", f"{service.url}/v1/jobs/{job}/events", timeout=60) for _ in range(3)]
     for watched in streams:
@@ -114,15 +118,84 @@ def test_watchers_are_bounded_and_do_not_starve_others(start: Callable[..., Serv
     reply = service.http.get(f"/v1/jobs/{job}/events")
     problem = check_problem(reply, 503, "too-many-streams")
     assert problem["limit"] == 3 and reply.headers["Retry-After"]
-    check_problem(service.http.get(f"/v1/jobs/{job}/events?wait=1"), 503, "too-many-streams")
+    check_problem(service.http.get(f"/v1/jobs/{job}/events?wait=1&after=9"), 503, "too-many-streams")
     assert service.http.get(f"/v1/jobs/{job}").status_code == 200
     assert "sheaf_event_streams 3" in service.http.get("/metrics").text
     streams[0].__exit__(None, None, None)  # a watcher that goes makes room at the next heartbeat
-    while service.http.get(f"/v1/jobs/{job}/events?wait=0.01").status_code == 503:
+    while service.http.get(f"/v1/jobs/{job}/events?wait=0.01&after=9").status_code == 503:
         pass
     gate.open()
     for watched in streams[1:]:
         watched.__exit__(None, None, None)
+
+
+def test_a_thousand_idle_streams_cost_no_thread(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--http-threads", "2", "--heartbeat", "1000")
+    job = service.accepted(gltf(gates={"0": gate.path}), {"frames": 0})
+    while service.http.get(f"/v1/jobs/{job}/events?wait=30&after=2").json()["last"] < 3:
+        pass
+    host, port = service.address.rsplit(":", 1)
+    count = min(1000, resource.getrlimit(resource.RLIMIT_NOFILE)[0] // 2)
+    streams = [socket.create_connection((host, int(port)), 60) for _ in range(count)]
+    for i, connection in enumerate(streams):  # half of them long polls
+        query = b"?wait=60&after=3" if i % 2 else b""
+        connection.sendall(b"GET /v1/jobs/%s/events%s HTTP/1.1\r\nHost: a\r\n\r\n" % (job.encode(), query))
+    while f"sheaf_event_streams {count}\n" not in service.http.get("/metrics").text:
+        pass
+    threads = len(list(pathlib.Path(f"/proc/{service.process.pid}/task").iterdir()))
+    assert threads < 15
+    began = time.monotonic()
+    for _ in range(20):
+        assert service.http.get(f"/v1/jobs/{job}").status_code == 200
+    assert time.monotonic() - began < 10
+    for connection in streams[: count // 4]:
+        connection.close()
+    while f"sheaf_event_streams {count - count // 4}\n" not in service.http.get("/metrics").text:
+        pass
+    gate.open()
+    for connection in streams[count // 4 :]:
+        heard = b""
+        while not heard.endswith(b"0\r\n\r\n"):
+            block = connection.recv(65536)
+            assert block
+            heard += block
+        assert b'"done"' in heard
+        connection.close()
+    service.wait(job)
+
+
+def test_a_connection_goes_on_after_a_long_poll(sheafd: Service, gate: Gate) -> None:
+    job = sheafd.accepted(gltf(gates={"0": gate.path}), {"frames": 0})
+    sheafd.wait(job, "running")
+    host, port = sheafd.address.rsplit(":", 1)
+    poll = b"GET /v1/jobs/%s/events?wait=0.05&after=3 HTTP/1.1\r\nHost: a\r\n\r\n" % job.encode()
+    with socket.create_connection((host, int(port)), 60) as connection:
+        for _ in range(3):
+            connection.sendall(poll)
+            heard = b""
+            while not heard.endswith(b"0\r\n\r\n"):
+                heard += connection.recv(65536)
+            assert b'"ended":false' in heard
+    gate.open()
+
+
+def test_a_client_that_does_not_read_stops_nobody(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--io-timeout", "0.5")
+    job = service.accepted(gltf(gates={"1": gate.path}, warnings=["w" * 2000] * 150), {"frames": "0-1"})
+    service.wait_for_frame(job, 0)
+    host, port = service.address.rsplit(":", 1)
+    stuck = socket.socket()
+    stuck.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    stuck.connect((host, int(port)))
+    stuck.sendall(b"GET /v1/jobs/%s/events HTTP/1.1\r\nHost: a\r\n\r\n" % job.encode())
+    while "sheaf_event_streams 1\n" not in service.http.get("/metrics").text:
+        pass
+    with service.http.stream("GET", f"/v1/jobs/{job}/events") as reply:
+        gate.open()
+        assert [e for e in parse(reply.iter_lines()) if "event" in e][-1]["data"]["state"] == "done"
+    while "sheaf_event_streams 0\n" not in service.http.get("/metrics").text:  # cut off after --io-timeout
+        pass
+    stuck.close()
 
 
 def test_removal_ends_a_stream(sheafd: Service, gate: Gate) -> None:

@@ -244,7 +244,6 @@ def run(*options: str) -> subprocess.CompletedProcess:
         ["--listen", "127.0.0.1:99999"],
         ["--jobs", "0"],
         ["--colour"],
-        ["--max-streams", "32", "--http-threads", "32"],
         ["--max-upload", "x"],
         ["--listen", "[::1:80"],
     ],

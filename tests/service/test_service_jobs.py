@@ -24,9 +24,9 @@ def test_a_job_from_submission_to_its_end(sheafd: Service) -> None:
     assert job["state"] == "done"
     assert job["progress"] == {"done": 3, "total": 3, "fraction": 1.0, "eta_s": None}
     assert [(f["frame"], f["state"], f["name"]) for f in job["frames"]] == [
-        (4, "done", "frame.0004.exr"),
-        (6, "done", "frame.0006.exr"),
-        (8, "done", "frame.0008.exr"),
+        (4, "done", "scene.0004.exr"),
+        (6, "done", "scene.0006.exr"),
+        (8, "done", "scene.0008.exr"),
     ]
     assert job["created"] <= job["started"] <= job["finished"] < job["expires"]
     assert job["error"] is None

@@ -103,9 +103,9 @@ def test_the_archive(sheafd: Service, done: str) -> None:
     assert reply.status_code == 200 and int(reply.headers["Content-Length"]) == len(reply.content)
     with zipfile.ZipFile(io.BytesIO(reply.content)) as zipped:
         assert zipped.testzip() is None
-        assert zipped.namelist() == ["frame.0000.exr", "frame.0001.exr", "frame.0002.exr"]
+        assert zipped.namelist() == ["scene.0000.exr", "scene.0001.exr", "scene.0002.exr"]
         for i in range(3):
-            assert zipped.read(f"frame.000{i}.exr") == sheafd.http.get(f"{done}/frames/{i}.exr").content
+            assert zipped.read(f"scene.000{i}.exr") == sheafd.http.get(f"{done}/frames/{i}.exr").content
         assert {i.date_time for i in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     again = sheafd.http.get(f"{done}/frames.zip", headers={"Range": "bytes=0-1"})
     assert again.status_code == 200 and again.content == reply.content
@@ -118,7 +118,7 @@ def test_the_archive_of_a_failed_job_has_its_whole_frames(sheafd: Service) -> No
     job = sheafd.accepted(gltf(exit={"code": 6, "message": "disk full"}, at=2), {"frames": "0-5"})
     assert sheafd.wait(job)["state"] == "failed"
     with zipfile.ZipFile(io.BytesIO(sheafd.http.get(f"/v1/jobs/{job}/frames.zip").content)) as zipped:
-        assert zipped.namelist() == ["frame.0000.exr", "frame.0001.exr"]
+        assert zipped.namelist() == ["scene.0000.exr", "scene.0001.exr"]
     for route in ("stats", "stats.csv"):
         check_problem(sheafd.http.get(f"/v1/jobs/{job}/{route}"), 404, "not-produced")
     none = sheafd.accepted(gltf(exit={"code": 6, "message": "disk full"}, at=0), {"frames": "0"})
@@ -139,7 +139,7 @@ def test_stats(sheafd: Service, done: str) -> None:
 
 
 def test_a_frame_that_was_changed_on_disk_is_not_passed_off(sheafd: Service, done: str) -> None:
-    path = sheafd.data / "jobs" / done.rsplit("/", 1)[1] / "frames" / "frame.0000.exr"
+    path = sheafd.data / "jobs" / done.rsplit("/", 1)[1] / "frames" / "scene.0000.exr"
     path.write_bytes(b"short")
     check_problem(sheafd.http.get(f"{done}/frames/0.exr"), 500, "internal")
     path.unlink()

@@ -66,7 +66,7 @@ def test_garbage_is_logged_and_harmless(sheafd: Service) -> None:
         '{"event":"frame","frame":0,"file":"/etc/passwd"}',
         '{"event":"frame","frame":0,"file":"../stats.json"}',
         '{"event":"frame","frame":0,"file":".."}',
-        '{"event":"frame","frame":77,"file":"frame.0000.exr"}',
+        '{"event":"frame","frame":77,"file":"scene.0000.exr"}',
         '{"event":"start","frames":-4}',
         "\u0000\u00ff" * 50,
         "x" * 200_000,
@@ -191,7 +191,7 @@ def test_stopping_ends_workers_and_keeps_whole_frames(
     assert service.process.wait(60) == 0
     assert time.monotonic() - began < 10
     assert [p.name for p in (service.data / "jobs" / job / "frames").iterdir() if p.suffix == ".exr"] == [
-        "frame.0000.exr"
+        "scene.0000.exr"
     ]
 
 

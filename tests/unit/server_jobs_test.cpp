@@ -2,12 +2,12 @@
 // Jobs: their events, their store, what workers' ends mean, the contract's names.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <set>
 #include <string>
 #include <thread>
 
 #include "http/problem.hpp"
-#include "jobs/memory_job_store.hpp"
 #include "jobs/outcome.hpp"
 #include "jobs/settings.hpp"
 #include "jobs/worker_events.hpp"
@@ -19,23 +19,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Job job_named(const std::string& id) {
-  Job job;
-  job.id = id;
-  job.created = std::chrono::system_clock::now();
-  return job;
+void append(EventLog& log, const std::string& type, nlohmann::ordered_json data = {}) {
+  NewEvents events(log.size());
+  events.append(type, std::move(data));
+  log.publish(events.list(), false);
 }
 
 TEST(EventLog, ReplaysFromAnyPlaceAndSaysWhenItIsOver) {
   EventLog log;
-  for (int i = 0; i < 5; ++i) log.append("frame", {{"frame", i}});
+  for (int i = 0; i < 5; ++i) append(log, "frame", {{"frame", i}});
   EXPECT_EQ(log.read(0, 100).events.size(), 5u);
   EXPECT_EQ(log.read(3, 100).events.front().id, 4u);
   EXPECT_EQ(log.read(0, 2).events.size(), 2u);
   EXPECT_TRUE(log.read(UINT64_MAX, 10).events.empty());
   EXPECT_FALSE(log.read(0, 100).ended);
   log.close();
-  log.append("late", {});
+  append(log, "late");
   EXPECT_FALSE(log.read(0, 4).ended);  // there is one more
   EXPECT_TRUE(log.read(0, 5).ended);
   EXPECT_TRUE(log.wait(5, 10, Clock::now() + std::chrono::hours(1)).ended);
@@ -58,7 +57,7 @@ TEST(EventLog, ManyReadersMissNothing) {
         if (batch.ended) return;
       }
     });
-  for (std::uint64_t i = 1; i <= count; ++i) log.append("n", {{"n", i}});
+  for (std::uint64_t i = 1; i <= count; ++i) append(log, "n", {{"n", i}});
   log.close();
   for (std::thread& reader : readers) reader.join();
   for (const std::uint64_t sum : sums) EXPECT_EQ(sum, count * (count + 1) / 2);
@@ -72,71 +71,20 @@ TEST(EventLog, InterruptionLetsWaitersGo) {
   EXPECT_TRUE(log.interrupted());
 }
 
-TEST(MemoryJobStore, PagesNewestFirstWithoutGapsOrRepeats) {
-  MemoryJobStore store;
-  for (int i = 0; i < 10; ++i) store.insert(job_named("j" + std::to_string(i)), {});
-  store.update("j4", [](Job& job, EventLog&) { job.state = JobState::done; });
-  JobQuery query;
-  query.limit = 3;
-  std::string seen;
-  for (bool more = true; more;) {
-    const JobPage page = store.list(query);
-    for (const JobSummary& job : page.jobs) seen += job.id[1];
-    query.before = page.next;
-    more = page.next.has_value();
-    if (seen.size() == 3) store.remove("j6");  // between two pages
-    if (seen.size() == 3) store.insert(job_named("jx"), {});
-  }
-  EXPECT_EQ(seen, "987543210");
-  query = {};
-  query.state = JobState::done;
-  ASSERT_EQ(store.list(query).jobs.size(), 1u);
-  EXPECT_EQ(store.list(query).jobs[0].id, "j4");
-  EXPECT_EQ(store.count().at(JobState::queued), 9u);
-}
-
-TEST(MemoryJobStore, KeysNameOneJobAsLongAsItIsThere) {
-  MemoryJobStore store;
-  EXPECT_EQ(store.insert(job_named("a"), {"k", "1"}).kind, Submitted::Kind::created);
-  const Submitted again = store.insert(job_named("b"), {"k", "1"});
-  EXPECT_EQ(again.kind, Submitted::Kind::repeated);
-  EXPECT_EQ(again.id, "a");
-  EXPECT_EQ(store.presence("b"), Presence::unknown);
-  EXPECT_EQ(store.insert(job_named("c"), {"k", "2"}).kind, Submitted::Kind::conflict);
-  EXPECT_TRUE(store.remove("a"));
-  EXPECT_FALSE(store.remove("a"));
-  EXPECT_EQ(store.presence("a"), Presence::removed);
-  EXPECT_EQ(store.insert(job_named("d"), {"k", "2"}).kind, Submitted::Kind::created);
-}
-
-TEST(MemoryJobStore, OneOfManyEqualKeysWins) {
-  MemoryJobStore store;
-  std::atomic<int> created{0};
-  std::vector<std::thread> clients;
-  for (int i = 0; i < 8; ++i)
-    clients.emplace_back([&store, &created, i] {
-      for (int k = 0; k < 200; ++k) {
-        const std::string key = std::to_string(k);
-        if (store.insert(job_named(key + "-" + std::to_string(i)), {key, "same"}).kind == Submitted::Kind::created)
-          ++created;
-      }
-    });
-  for (std::thread& client : clients) client.join();
-  EXPECT_EQ(created, 200);
-}
-
-TEST(MemoryJobStore, ExpiryAndRemovalKeepEventsReadable) {
-  MemoryJobStore store;
-  store.insert(job_named("a"), {});
-  const auto now = std::chrono::system_clock::now();
-  store.update("a", [&](Job& job, EventLog&) { job.expires = now; });
-  EXPECT_TRUE(store.expired(now - std::chrono::seconds(1)).empty());
-  EXPECT_EQ(store.expired(now), std::vector<std::string>{"a"});
-  const auto events = store.events("a");
-  store.remove("a");
-  EXPECT_TRUE(events->read(0, 10).ended);
-  EXPECT_EQ(store.events("a"), nullptr);
-  EXPECT_FALSE(store.update("a", [](Job&, EventLog&) { FAIL(); }));
+TEST(Outcome, OnlyWhatIsNotTheScenesIsTriedAgain) {
+  const auto passing = [](std::optional<int> code, std::optional<int> signal) {
+    Ending end;
+    end.worker = {code, signal};
+    return is_passing(end);
+  };
+  for (const int code : {4, 130, 143}) EXPECT_TRUE(passing(code, {})) << code;
+  for (const int code : {0, 1, 2, 3, 5, 6}) EXPECT_FALSE(passing(code, {})) << code;
+  EXPECT_TRUE(passing({}, SIGKILL));
+  for (const int number : {SIGSEGV, SIGABRT, SIGXCPU, SIGSYS}) EXPECT_FALSE(passing({}, number)) << number;
+  Ending late;
+  late.worker = {{}, SIGKILL, true};
+  EXPECT_FALSE(is_passing(late));
+  EXPECT_EQ(outcome_of(late).failure->code, "limit-exceeded");
 }
 
 TEST(Outcome, FollowsTheTable) {

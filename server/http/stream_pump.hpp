@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Replies that last (event streams, long polls), all on one thread: each is woken when its source has news or its time
+// has come, and written as far as its client takes it. None of them can hold up another, or a thread that answers
+// requests.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "http/connection.hpp"
+#include "http/message.hpp"
+
+namespace sheaf::server {
+
+class StreamPump {
+ public:
+  /// `done` gets the connection back: `keep` if another request may follow on it.
+  using Done = std::function<void(ConnectionPtr connection, const ExchangeRecord& record, bool keep)>;
+  StreamPump(std::chrono::milliseconds write_timeout, Done done);
+  ~StreamPump();
+  StreamPump(const StreamPump&) = delete;
+  StreamPump& operator=(const StreamPump&) = delete;
+
+  struct Job {
+    ConnectionPtr connection;
+    std::string head;  // of the reply, as it goes out
+    LastingBody body;
+    bool chunked = true, keep = true;
+    ExchangeRecord record;
+    std::chrono::steady_clock::time_point started;
+  };
+  void add(Job job);
+
+  /// Ends what is over, gives the rest until `deadline`, then drops it. Nothing may be added after.
+  void stop(std::chrono::steady_clock::time_point deadline);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Stream {
+    Job job;
+    std::string out;  // written next
+    std::shared_ptr<void> watch;
+    Clock::time_point due, stuck_at;
+    bool over = false, waits_for_room = false;
+  };
+
+  void wake(std::uint64_t number);
+  void notify() const;
+  void work();
+  void take_arrivals(std::set<std::uint64_t>& ready);
+  void run_stream(std::uint64_t number, Clock::time_point now);
+  bool write_out(std::uint64_t number, Stream& stream);
+  void finish(std::uint64_t number, bool whole);
+  [[nodiscard]] Clock::time_point next_time() const;
+
+  std::chrono::milliseconds write_timeout_;
+  Done done_;
+  Fd epoll_, event_;
+  std::mutex mutex_;
+  std::vector<std::pair<std::uint64_t, Job>> arrived_;
+  std::set<std::uint64_t> woken_;
+  std::uint64_t last_ = 0;
+  bool stopping_ = false;
+  Clock::time_point deadline_;
+  std::map<std::uint64_t, Stream> streams_;  // the thread's own
+  std::thread thread_;
+};
+
+}  // namespace sheaf::server

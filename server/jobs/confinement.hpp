@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What keeps a worker, which reads strangers' files, from everything but its own job. Prepared before the fork; applied
+// in the child by system calls alone. Each measure the kernel has is taken, the others are left out, and which is
+// known.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "util/fd.hpp"
+
+namespace sheaf::server {
+
+struct ConfinementOptions {
+  bool on = true;
+  std::uint64_t memory_bytes = std::uint64_t{16} << 30;  // of private memory: RLIMIT_DATA
+  std::uint64_t cpu_seconds = 86'400;                    // of processor time
+  std::uint64_t file_bytes = std::uint64_t{8} << 30;     // of one file
+  std::vector<std::string> readable;  // beyond the system's own folders, the worker's program and its job
+};
+
+class Confinement {
+ public:
+  /// For a worker that is `program` and writes in `folder` (empty: nowhere).
+  Confinement(const ConfinementOptions& options, const std::string& program, const std::filesystem::path& folder);
+
+  enum Measure : unsigned { limits = 1, no_new_privileges = 2, files = 4, system_calls = 8 };
+
+  /// In the forked child; async-signal-safe. Returns the measures that hold, or'ed.
+  [[nodiscard]] unsigned apply() const noexcept;
+
+ private:
+  ConfinementOptions options_;
+  Fd ruleset_;
+};
+
+/// Tries every measure in a child: names of those that hold here.
+[[nodiscard]] std::vector<std::string> active_measures(const ConfinementOptions& options);
+
+/// Names of all there are.
+[[nodiscard]] std::vector<std::string> all_measures();
+
+}  // namespace sheaf::server

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""The contract against the live service: schemathesis asks for everything it describes, and for what it does not."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+from service import Service, gltf
+
+SCHEMATHESIS = pathlib.Path(sys.executable).with_name("schemathesis")
+EXAMPLES = os.environ.get("SHEAF_CONTRACT_EXAMPLES", "10")  # of each operation; 200 for a long run
+
+
+@pytest.mark.skipif(not SCHEMATHESIS.is_file(), reason="schemathesis is not installed")
+@pytest.mark.parametrize(
+    "choice",
+    [
+        ("--exclude-operation-id", "submitJob"),
+        # What is a scene no schema can say: a well-formed submission may still be refused.
+        ("--include-operation-id", "submitJob", "--exclude-checks", "positive_data_acceptance"),
+    ],
+)
+def test_the_contract_is_true(sheafd: Service, tmp_path: pathlib.Path, choice: tuple[str, ...]) -> None:
+    sheafd.wait_until_ready()
+    sheafd.wait(sheafd.accepted(gltf(), {"frames": 0}))
+    options = ["--checks", "all", "--max-examples", EXAMPLES, "--phases", "examples,coverage,fuzzing", "--no-color"]
+    ended = subprocess.run(
+        [SCHEMATHESIS, "run", sheafd.url + "/openapi.json", *options, *choice],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        timeout=900,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stdout[-8000:]
+    assert not [entry for entry in sheafd.log if entry.get("level") == "error"]
