@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from case import BLUE, FURNACE, NO_LIGHT, TRACED, WHITE, Case, everywhere, mirror, one_mesh, shows, triangles_of, unlit
+from case import (BLUE, FURNACE, NO_LIGHT, TRACED, WHITE, Case, everywhere, mirror, nothing, one_mesh, sane, shows,
+                  triangles_of, unlit)
 from geometry_scenes import watched
 from glb import Glb
+from rendering import SCENES
 from shapes import Shape, box, facing_z, joined
 
 
@@ -38,6 +39,14 @@ def two_million_rays() -> bytes:
     return one_mesh(triangles_of([(-8, -4, 0), (8, -4, 0), (0, 12, 0)]), mirror((0.5, 0.5, 0.5)), NO_LIGHT)
 
 
+def framed_whole(picture) -> None:
+    """The box is seen, and nothing of it past the picture's border."""
+    sane(picture)
+    covered = picture.alpha > 0
+    assert covered.sum() > 20
+    assert not (covered[0].any() or covered[-1].any() or covered[:, 0].any() or covered[:, -1].any())
+
+
 HALF = lambda x, y: (abs(x) < 0.5) & (abs(y) < 0.5)  # noqa: E731
 SQUARE = shows(WHITE, HALF)
 CASES = {
@@ -48,6 +57,9 @@ CASES = {
                               shows(WHITE, lambda x, y: abs(y) < 0.5, extent=(1 / 16384, 1)), TRACED, size="1x16384"),
     "16384 pixels wide, rasterised": Case(lambda: one_mesh(facing_z(2000, 1), unlit()),
                                           shows(WHITE, lambda x, y: abs(x) < 1000, extent=(16384, 1)), size="16384x1"),
+    "no triangle": Case((SCENES / "no_triangles.glb").read_bytes, nothing),
+    "nothing at all": Case((SCENES / "empty.glb").read_bytes, nothing),
+    "no camera": Case((SCENES / "no_camera.glb").read_bytes, framed_whole),
     "two million rays to one triangle": Case(two_million_rays, everywhere((0.5, 0.5, 0.5)), FURNACE, size="2048x1024"),
     "orthographic camera inside a solid": Case(lambda: in_a_box(lambda glb: glb.orthographic("camera", 0.5, 0.5)),
                                                everywhere(WHITE)),

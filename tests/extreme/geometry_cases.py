@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from case import (BLUE, FURNACE, NO_LIGHT, RED, TRACED, WHITE, Case, everywhere, mirror, nothing, one_mesh, sane, shows,
+from case import (BLUE, FURNACE, NO_LIGHT, RED, TRACED, WHITE, Case, everywhere, matte, mirror, nothing, one_mesh, sane, shows,
                   triangles_of, unlit)
 from geometry_scenes import watched
 from glb import Glb
-from shapes import Shape, box, facing_z, joined, sphere
+from shapes import Shape, box, facing_z, grid, joined, sphere
 
 HALF_SQUARE = lambda x, y: (abs(x) < 0.5) & (abs(y) < 0.5)  # noqa: E731
 
@@ -23,6 +25,19 @@ def scaled_view(scale: float, offset=(0.0, 0.0, 0.0)) -> bytes:
     nodes = [{"name": "square", "mesh": mesh, "translation": offset.tolist()},
              {"name": "camera", "camera": lens, "translation": eye.tolist()}]
     glb.scene([glb.add("nodes", node) for node in nodes], "scaled")  # unrounded, as 1e-6 must stay what it is
+    return glb.bytes()
+
+
+def tilted_at(scale: float) -> bytes:
+    """A diffuse plane at 45 degrees to a sun and a camera that look the same way; without normals of its own."""
+    glb = Glb()
+    shape = grid((-2.25, -1.25, -2.25), (4.5, 0, 4.5), (0, 2.5, 0))
+    mesh = glb.mesh(glb.primitive(Shape(shape.positions * scale, shape.triangles), matte()(glb)))
+    lens = glb.add("cameras", {"type": "orthographic", "orthographic": {
+        "xmag": 2 * scale, "ymag": scale, "znear": 0.01 * scale, "zfar": 100 * scale}})
+    nodes = [glb.add("nodes", {"mesh": mesh}), glb.add("nodes", {"camera": lens, "translation": [0, 0, 5 * scale]}),
+             glb.light("sun", "directional", math.pi)]
+    glb.scene(nodes, "tilted")
     return glb.bytes()
 
 
@@ -168,12 +183,15 @@ def deep_nodes(depth: int) -> bytes:
 
 
 SQUARE = shows(WHITE, HALF_SQUARE)
+TILTED = everywhere((0.5**0.5,) * 3, relative=2e-3)
 CASES = {
     "scale 1e-6": Case(lambda: scaled_view(1e-6), SQUARE), "scale 1e6": Case(lambda: scaled_view(1e6), SQUARE),
     "scale 1e-12": Case(lambda: scaled_view(1e-12), SQUARE), "scale 1e12": Case(lambda: scaled_view(1e12), SQUARE),
     "1e7 from the origin": Case(lambda: scaled_view(1, (1e7, -1e7, 1e7)), SQUARE),
     "1e12 from the origin": Case(lambda: scaled_view(1, (1e12, -1e12, 1e12)), SQUARE),
     "a millimetre at 1e7": Case(lambda: scaled_view(1e-3, (1e7, -1e7, 1e7)), SQUARE),
+    "tilted, scale 1e-6": Case(lambda: tilted_at(1e-6), TILTED), "tilted, scale 1e6": Case(lambda: tilted_at(1e6), TILTED),
+    "tilted, scale 1e-12": Case(lambda: tilted_at(1e-12), TILTED), "tilted, scale 1e12": Case(lambda: tilted_at(1e12), TILTED),
     "sliver 1e6:1": Case(lambda: vertical_sliver(1.5e-6, 0.0625), shows(WHITE, lambda x, y: (x == 0.0625) & (abs(y) < 0.75)),
                           TRACED),
     "sliver 1e9:1": Case(lambda: vertical_sliver(1.5e-9, 0.0625), sane),
@@ -188,7 +206,7 @@ CASES = {
     "through vertices, other diagonal, traced": Case(lambda: through_vertices(True), everywhere(WHITE), TRACED),
     "in the plane of a triangle": Case(edge_on, everywhere(WHITE)),
     "inside a closed mesh": Case(inside_a_sphere, everywhere(WHITE), ("--spp", 8, *TRACED)),
-    "grid on voxel borders": Case(voxel_mirror, everywhere((0.5, 0.5, 0.5)), (*FURNACE, *TRACED)),
+    "grid on voxel borders": Case(voxel_mirror, everywhere((0.5, 0.5, 0.5)), (*FURNACE, *TRACED, "--sort", "on")),
     "touching boxes": Case(touching_boxes, everywhere(WHITE), TRACED),
     "scale 1e6 by 1e-6": Case(anisotropic, SQUARE),
     "a hundred thousand instances in one place": Case(lambda: instances_in_one_place(100_000), SQUARE, size="8x4"),

@@ -116,7 +116,7 @@ CASES = {
                               ("--depth", 64, "--cutoff", 0), size="8x4"),
     "mirrors, depth 1000": Case(facing_mirrors, everywhere((1001 / 1024,) * 3, relative=0, absolute=0),
                                 ("--depth", 1000, "--cutoff", 0), size="8x4"),
-    "all rays identical": Case(identical_rays, everywhere((0.5, 0.5, 0.5)), (*FURNACE, *TRACED), size="64x36"),
+    "all rays identical": Case(identical_rays, everywhere((0.5, 0.5, 0.5)), (*FURNACE, *TRACED, "--sort", "on"), size="64x36"),
     "forty panes, depth 8": Case(lambda: panes(40, 0.5, "BLEND"), shows(1 - 2.0**-9, HALF, covers=1 - 2.0**-9),
                                  ("--depth", 8, "--cutoff", 0)),
     "two hundred masked panes": Case(lambda: panes(200, 0.4, "MASK"), shows(BLUE, HALF)),
