@@ -24,7 +24,6 @@ class Case:
     check: Callable[[Picture], None] | dict[int, Callable[[Picture], None]]  # or by frame
     options: Sequence[object] = ()
     size: str = "32x16"
-    finite: bool = True  # every channel of the picture
     refused: dict[str, int] = field(default_factory=dict)  # strategies that may say no instead: with this exit code
 
     @property

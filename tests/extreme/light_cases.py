@@ -56,10 +56,9 @@ def light_in_a_box() -> bytes:
 
 
 def too_bright(picture) -> None:
-    """More than a half float holds: the largest there is or infinity, never NaN, and as covered as ever."""
+    """More than a half float holds: the largest there is."""
     assert (picture.alpha == 1).all()
-    assert not np.isnan(picture.rgba.astype(float)).any()
-    assert (picture.rgb >= 65504).all()
+    assert (picture.rgb == 65504).all()
 
 
 def sun(direction_turn) -> object:
@@ -85,5 +84,5 @@ CASES = {
     "sixty-four lights in one place": Case(lambda: plane(*[lamp(25 * math.pi / 64, (0, 0, 5))] * 64), lit_from(5, 25 * math.pi)),
     "light 1e7 away": Case(lambda: plane(lamp(math.pi * 1e14, (0, 0, 1e7))), everywhere(WHITE, relative=2e-3)),
     "cone of a right angle": Case(lambda: plane(spot), spot_to_a_right_angle),
-    "intensity 1e30": Case(lambda: plane(lamp(1e30, (0, 0, 2))), too_bright, finite=False),
+    "intensity 1e30": Case(lambda: plane(lamp(1e30, (0, 0, 2))), too_bright),
 }

@@ -77,7 +77,7 @@ def panes(count: int, alpha: float, mode: str) -> bytes:
 
 
 def in_one_plane(count: int) -> bytes:
-    """`count` blended panes in the very same place, red: coincident surfaces count once, as ties go to the lower triangle."""
+    """`count` blended panes in the very same place, red: see once_to_all."""
     glb = Glb()
     pane = joined([facing_z(1, 1)] * count)
     return watched(glb, [glb.node("panes", mesh=glb.mesh(glb.primitive(

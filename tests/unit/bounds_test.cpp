@@ -336,7 +336,7 @@ TEST(Bounds, NoRayMeetsWhereItStarts) {
   // A normal's squares are fourth powers of a triangle's sides, which here are down to 1e-4 of the size.
   Search search("offset of an origin (in units of the least that would do)", -3, 9);
   std::size_t needles = 0, meeting_needles = 0;
-  over_decades(6000, [&](Dice& dice, int decade, Real size) {
+  over_decades(2500, [&](Dice& dice, int decade, Real size) {
     const Shot shot = random_shot(dice, size, false);
     const auto hit = shader::intersect(shot.origin, shot.direction, shot.corner, shot.box_pad);
     const Real aspect = aspect_of(shot);
