@@ -11,7 +11,7 @@ namespace sheaf::server {
 
 struct ProgramOptions {
   std::string host = "127.0.0.1", port = "8080";
-  std::string data;       // empty: a folder of its own, removed at the end
+  std::string data;        // empty: a folder of its own, removed at the end
   std::string port_file;   // empty: none
   std::string token_file;  // empty: none
   std::string new_token;   // to be made and printed instead of serving

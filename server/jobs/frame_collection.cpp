@@ -14,10 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 
 FrameNames names_of(const JobSummary& job) {
-  return FrameNames(job.settings.value("name", default_name_pattern(job.scene_file)));
+  const auto name = job.settings.find("name");
+  return FrameNames(name != job.settings.end() ? name->get<std::string>() : default_name_pattern(job.scene_file));
 }
 
-bool has_previews(const JobSummary& job) { return job.settings.value("preview", true); }
+bool has_previews(const JobSummary& job) {
+  const auto preview = job.settings.find("preview");
+  return preview != job.settings.end() && preview->get<bool>();
+}
 
 StoredFilePtr whole_file(const fs::path& path) {
   std::optional<StoredFile> file = stored_file(path);

@@ -13,16 +13,20 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t batch_size = 256;
 constexpr double max_wait_s = 60;
 
-/// Where to go on: ?after=, else what a reconnecting event source says it has.
-std::uint64_t start_after(const Request& request) {
-  const auto argument = request.argument("after");
-  const std::string text = argument ? *argument : request.header("Last-Event-ID").value_or("0");
+std::uint64_t event_id(const std::string& text, const std::string& what) {
   std::uint64_t id = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw Problem(ProblemKind::malformed_request,
-                  std::string(argument ? "query: after" : "Last-Event-ID") + " must be an event's id");
+    throw Problem(ProblemKind::malformed_request, what + " must be an event's id");
   return id;
+}
+
+/// Where to go on: ?after=, else what a reconnecting event source says it has. An empty header is as good as none.
+std::uint64_t start_after(const Request& request) {
+  const std::string header = request.header("Last-Event-ID").value_or("");
+  const std::uint64_t seen = header.empty() ? 0 : event_id(header, "Last-Event-ID");
+  const auto argument = request.argument("after");
+  return argument ? event_id(*argument, "query: after") : seen;
 }
 
 double wait_seconds(const std::string& text) {

@@ -29,7 +29,7 @@ def test_a_gltf_with_its_files(sheafd: Service) -> None:
     assert (folder / "textures" / "wood grain.png").read_bytes() == b"image"
 
 
-@pytest.mark.parametrize("written", ['say %22hi%22.png', 'say \\"hi\\".png'])
+@pytest.mark.parametrize("written", ["say %22hi%22.png", 'say \\"hi\\".png'])
 def test_file_names_with_quotes(sheafd: Service, written: str) -> None:
     part = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="%s"\r\n\r\n{}\r\n'
     body = part % (b"scene", b"s.gltf") + part % (b"file", written.encode()) + b"--b--\r\n"

@@ -10,6 +10,7 @@
 #include "jobs/job_change.hpp"
 #include "store/sqlite_job_store.hpp"
 #include "util/ids.hpp"
+#include "util/log.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -109,6 +110,11 @@ TEST_F(Store, ExpiryAndRemovalKeepEventsReadable) {
   EXPECT_FALSE(store.update("a", [](Job&, NewEvents&) { FAIL(); }));
 }
 
+/// Names may be any bytes; JSON shows those that are not UTF-8 as replaced.
+std::string shown(const SqliteJobStore& store) {
+  return dump_json(job_to_json(*store.find("a"))) + dump_json(job_to_json(*store.find("b")));
+}
+
 TEST_F(Store, EverythingIsThereWhenItIsOpenedAgain) {
   const auto file = [](const std::string& name) {
     return std::make_shared<const StoredFile>(StoredFile{name, 5'000'000'000, 0xffffffff, std::string(64, 'a')});
@@ -135,10 +141,10 @@ TEST_F(Store, EverythingIsThereWhenItIsOpenedAgain) {
     store.update("b", [](Job& stored, NewEvents& events) {
       finish_job(stored, events, JobState::failed, Failure{"code", "title", "why", 3, {}}, std::chrono::hours(1));
     });
-    before = job_to_json(*store.find("a")).dump() + job_to_json(*store.find("b")).dump();
+    before = shown(store);
   }
   SqliteJobStore store(path());
-  EXPECT_EQ(job_to_json(*store.find("a")).dump() + job_to_json(*store.find("b")).dump(), before);
+  EXPECT_EQ(shown(store), before);
   EXPECT_EQ(store.find("a")->scene_file, job.scene_file);
   EXPECT_EQ(store.find("a")->frames[1].exr->name, "\xff.0000.exr");
   EXPECT_EQ(store.find("a")->arguments, job.arguments);
