@@ -10,7 +10,7 @@ from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from ._canvas import KIND_COLOURS, KIND_MARKS, Draw, Theme, rows, short
 from ._measure import KINDS, Trial
@@ -138,6 +138,7 @@ def _rate(trial: Trial, kind: str) -> float | None:
 def _levels(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
     levelled = [trial for trial in trials if has_levels(trial)]
     kinds = [kind for kind in KINDS if any(any(trial.tests_by_level.get(kind, ())) for trial in levelled)]
+    deepest = max(2, *(len(levels) for trial in levelled for levels in trial.tests_by_level.values()))
     shown = [trial for trial in levelled if "primary" not in trial.point.settings] or levelled
 
     def draw(figure: Figure, theme: Theme) -> None:
@@ -152,7 +153,8 @@ def _levels(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
                 axes.plot(range(len(levels)), levels, color=palette(index), label=label, **style)
             axes.set(title=kind, yscale="log", xlabel="level, 0: the roots")
             axes.yaxis.set_major_formatter(lambda value, _: short(value))
-            axes.xaxis.get_major_locator().set_params(integer=True)
+            axes.set_xlim(-0.4, deepest - 0.6)
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             axes.grid()
         panels[0].set_ylabel("node-object tests")
         figure.legend(loc="outside upper left", ncols=5)

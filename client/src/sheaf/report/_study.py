@@ -19,6 +19,9 @@ from ._measure import Bench, Trial
 from ._plan import Point, StudyOptions, error_points, memory_points, strategy_points
 from ._stability import Stability, stability
 
+EXTREME_SHARE = 0.1
+"""Time of a scene that is looked at for stability alone, as a share of a whole one's."""
+
 Progress = Callable[[str, float], object]
 """Called with what is done next, and with the share of the time or of the work that is over, 0 … 1."""
 
@@ -98,7 +101,7 @@ def study(
     names = _names([*scenes, *extremes])
     with tempfile.TemporaryDirectory(prefix="sheaf-report-") as folder:
         for index, path in enumerate(scenes):
-            left = len(scenes) - index + (1 if extremes else 0)
+            left = len(scenes) - index + min(1.0, EXTREME_SHARE * len(extremes))
             deadline = time.monotonic() + max(0.0, end - time.monotonic()) / left
             bench = Bench(program, path, options, Path(folder), deadline)
             done = index / (len(scenes) + len(extremes))
