@@ -37,17 +37,21 @@ template <typename Real>
 struct Projected {
   Vec2<Real> corner[3];
   Real depth[3];
-  Real largest = 0;  // coordinate of corner − origin
+  Real axis_depth[3];  // t at which the ray has come as far as the corner along its own largest axis
+  Real largest = 0;    // coordinate of corner − origin
 };
 
 template <typename Real>
 Projected<Real> project(const View<Real>& view, const Triangle& triangle) {
   using Vec3 = glm::vec<3, Real>;
   Projected<Real> p;
+  const Vec3 a = glm::abs(view.along);
+  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
   for (int k = 0; k < 3; ++k) {
     const Vec3 q = Vec3(triangle.corner[k]) - view.origin;
     p.corner[k] = {glm::dot(q, view.u), glm::dot(q, view.v)};
     p.depth[k] = glm::dot(q, view.along);
+    p.axis_depth[k] = q[axis] / view.along[axis] / view.length;
     p.largest = std::max({p.largest, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
   }
   return p;
@@ -70,7 +74,8 @@ Measured<Real> measure_projected(const Projected<Real>& p, Real length) {
   m.clearance = holds(c, here) ? outline : -outline;
   m.t = std::clamp(at_plane, lo, hi) / length;
   const Real slope = height > 4 * m.reach ? 4 * m.reach / height : Real(1);
-  m.t_error = Real(depth_factor) * (p.largest / length + std::abs(m.t)) + slope * (hi - lo) / length;
+  const auto [near, far] = std::minmax({p.axis_depth[0], p.axis_depth[1], p.axis_depth[2]});
+  m.t_error = Real(depth_factor) * (p.largest / length + std::abs(m.t)) + slope * (far - near);
   return m;
 }
 

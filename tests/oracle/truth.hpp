@@ -9,8 +9,9 @@
 // Signs of edge functions must be right for the sheared corners; so a corner's displacement is all there is. At the
 // plane,
 //   t_error = 2^-19·(M/|d| + |t|) + extent·min(1, 4·reach/h):
-// rounding of depths and of the weighted sum; and the slope of the triangle times its corners' displacement, h its
-// least height as the ray sees it, extent its length along the ray. A nearly edge-on triangle is held to its own
+// rounding of depths and of the weighted sum; and what the corners' displacement does to the weights, h being the
+// triangle's least height as the ray sees it. The weights are of depths along the ray's largest axis, so extent is the
+// triangle's along that axis (in units of t), not along the ray: that is what a needle's t errs by, up to its whole
 // extent.
 #pragma once
 
