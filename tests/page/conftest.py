@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import shutil
@@ -27,25 +28,35 @@ def chromium() -> str:
     return found or pytest.skip("no chromium")
 
 
-@pytest.fixture(scope="session")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A service's address; it is started once, and its worker is the real engine."""
-    process = subprocess.Popen(
-        [BUILD / "sheafd", "--listen", "127.0.0.1:0", "--min-free", "0"]
-        + ["--data", tmp_path_factory.mktemp("service") / "data"],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+@contextlib.contextmanager
+def running(data: pathlib.Path, *options: str) -> Iterator[str]:
+    """The address of a service whose worker is the real engine."""
+    command = [BUILD / "sheafd", "--listen", "127.0.0.1:0", "--min-free", "0", "--data", data, *options]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert process.stderr
-    address = next(
-        (line.split('"address":"')[1].split('"')[0] for line in process.stderr if '"address":"' in line), None
-    )
+    said = (line.split('"address":"') for line in process.stderr if '"address":"' in line)
+    address = next((rest.split('"')[0] for _, rest in said), None)
     reader = threading.Thread(target=process.stderr.read, daemon=True)  # or the pipe fills up
     reader.start()
     assert address, "sheafd did not start"
     yield f"http://{address}/"
     process.terminate()
     assert process.wait(60) == 0
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with running(tmp_path_factory.mktemp("service") / "data") as address:
+        yield address
+
+
+@pytest.fixture
+def guarded(tmp_path: pathlib.Path) -> Iterator[tuple[str, str]]:
+    """A service that wants a token, and the token."""
+    made = subprocess.run([BUILD / "sheafd", "--new-token", "visitor=read,submit"], capture_output=True, text=True)
+    (tmp_path / "tokens").write_text(made.stdout)
+    with running(tmp_path / "data", "--token-file", str(tmp_path / "tokens")) as address:
+        yield address, made.stderr.split()[-1]
 
 
 @pytest.fixture(scope="session")
@@ -63,15 +74,15 @@ def visit(browser, service: str) -> Iterator[Callable[..., object]]:
     bad: list[str] = []
     contexts = []
 
-    def open_page(path: str = "", **options: object):
+    def open_page(path: str = "", at: str = service, **options: object):
         context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
         context.set_default_timeout(PATIENCE_MS)
         playwright.expect.set_options(timeout=PATIENCE_MS)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: bad.append(f"error: {error}"))
-        page.on("request", lambda request: bad.append(request.url) if is_elsewhere(request.url, service) else None)
-        page.goto(service + path)
+        page.on("request", lambda request: bad.append(request.url) if is_elsewhere(request.url, at) else None)
+        page.goto(at + path)
         return page
 
     yield open_page

@@ -165,24 +165,27 @@ def test_refusals_are_shown_in_words(visit: Visit, tmp_path: pathlib.Path) -> No
     expect(page.locator("#job-hint")).to_contain_text("no job")
 
 
-def test_a_token_is_asked_for_once(visit: Visit) -> None:
-    page = visit()
-    seen: list[str | None] = []
-
-    def guard(route) -> None:
-        given = route.request.headers.get("authorization")
-        seen.append(given)
-        if given == "Bearer secret":
-            route.fulfill(json={"jobs": [], "next": None})
-        else:
-            route.fulfill(status=401, json={"title": "A token is needed"})
-
-    page.route("**/v1/jobs?*", guard)
+def test_a_token_is_asked_for_and_serves_everything(visit: Visit, guarded: tuple[str, str]) -> None:
+    """The list, the upload, the event stream, pictures and stats: each carries it."""
+    address, token = guarded
+    page = visit(at=address)
     expect(page.locator("#token-dialog")).to_be_visible()
-    page.fill("#token", "secret")
+    page.fill("#token", "wrong")
+    page.keyboard.press("Enter")
+    expect(page.locator("#token-dialog")).to_be_visible()
+    page.fill("#token", token)
     page.keyboard.press("Enter")
     expect(page.locator("#jobs")).to_contain_text("None yet.")
-    assert seen[-1] == "Bearer secret"
+    send(page, SCENES / "cornell.glb", "0-1")
+    expect(page.locator("#job-state")).to_have_text("done")
+    expect(page.locator("#screen")).to_have_attribute("data-frame", "1")
+    expect(page.locator("#tests tbody tr").first).to_be_attached()
+    page.click("#open")
+    expect(page.locator("#pixel")).to_contain_text("320 × 180")
+    with page.expect_download() as download:
+        page.keyboard.press("Escape")
+        page.get_by_role("button", name="All frames").click()
+    assert download.value.suggested_filename == "cornell.glb.zip"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
