@@ -14,15 +14,12 @@ struct Triangle {
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Triangles { Triangle triangle[]; };
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_MATERIALS, readonly, Material, materials);
-BUFFER(ROLE_INDICES, readonly, uint, indices);
-BUFFER(ROLE_POSITIONS, readonly, vec3, positions);
-BUFFER(ROLE_DYNAMIC, readonly, vec3, dynamic_vertices);
 BUFFER(ROLE_WORK, readonly, uvec2, work);  // (instance, first triangle within it)
 layout(push_constant) uniform Push { uint blocks; } push;
 
 vec3 world_position(Instance i, uint v) {
-  if (i.dynamic != NO_INDEX) return dynamic_vertices[3u * (i.dynamic + v)];
-  vec3 p = positions[i.first_vertex + v];
+  if (i.dynamic != NO_INDEX) return load_dynamic(3u * (i.dynamic + v));
+  vec3 p = load_position(i.first_vertex + v);
   precise vec3 world = vec3(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p)) + i.translation;
   return world;
 }
@@ -40,6 +37,6 @@ void main() {
   uint word = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
               ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u);
   Triangles(frame.triangles_at).triangle[t] =
-      Triangle(world_position(i, indices[first]), world_position(i, indices[first + 1u]),
-               world_position(i, indices[first + 2u]), word);
+      Triangle(world_position(i, load_index(first)), world_position(i, load_index(first + 1u)),
+               world_position(i, load_index(first + 2u)), word);
 }

@@ -5,10 +5,9 @@
 // glTF 2.0, 3.7.2.2 (morph targets) and 3.7.3 (skins). A workgroup takes one block of up to GROUP vertices of one instance.
 #define COMPUTE
 #include "common.glsl"
+#include "rays.glsl"
+#include "memory.glsl"
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
-BUFFER(ROLE_POSITIONS, readonly, vec3, positions);
-BUFFER(ROLE_NORMALS, readonly, vec3, normals);
-BUFFER(ROLE_TANGENTS, readonly, vec4, tangents);
 BUFFER(ROLE_DYNAMIC, writeonly, vec3, dynamic_vertices);
 BUFFER(ROLE_DEFORM, readonly, Deform, deforms);
 BUFFER(ROLE_JOINTS, readonly, uint, joints);
@@ -45,10 +44,10 @@ void main() {
   Deform d = deforms[job.x];
   uint v = job.y + gl_LocalInvocationID.x;
   if (v >= d.vertex_count) return;
-  vec3 p = morphed(positions[d.first_vertex + v], d, d.morph_first, v);
-  vec3 n = morphed(normals[d.first_vertex + v], d, d.morph_normals, v);
+  vec3 p = morphed(load_position(d.first_vertex + v), d, d.morph_first, v);
+  vec3 n = morphed(load_normal(d.first_vertex + v), d, d.morph_normals, v);
   vec3 t = vec3(0);
-  if (d.tangent != NO_INDEX) t = morphed(tangents[d.tangent + v].xyz, d, d.morph_tangents, v);
+  if (d.tangent != NO_INDEX) t = morphed(load_tangent(d.tangent + v).xyz, d, d.morph_tangents, v);
   vec4 r0, r1, r2;
   if (d.joint_words != NO_INDEX) {
     blended_matrix(d, v, r0, r1, r2);

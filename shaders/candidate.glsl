@@ -62,19 +62,22 @@ ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STO
 // lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one left absorbs over t.
 bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 stops) {
   Corners corners = load_triangle(triangle);
-  Instance instance = instances[instance_of(corners)];
-  Material m = materials[instance.material];
+  Looks looks = looks_of(instance_of(corners));
+  Instance instance = looks.instance;
+  Material m = looks.material;
   if ((m.flags & MATERIAL_NOT_OPAQUE) == 0u) return false;
   uvec3 v = triangle_vertices(instance, triangle);
   vec2 uv0 = interpolate_uv(instance.uv0, v, b), uv1 = interpolate_uv(instance.uv1, v, b);
-  vec4 base = base_color_at(instance, m, v, b, uv0, uv1);
+  vec4 texels[TEXTURES];
+  look_up_all(instance.material, TEXTURE_TRANSMISSION + 1u, uv0, uv1, texels);
+  vec4 base = base_color_at(instance, m, v, b, texels[TEXTURE_BASE_COLOR]);
   if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
   vec3 g = cross(corners.b - corners.a, corners.c - corners.a);
   float cosine = dot(g, direction) / max(length(g), 1e-37) * instance.determinant_sign;
   vec3 passed = vec3(0);
   if ((m.flags & (MATERIAL_TRANSMISSIVE | MATERIAL_UNLIT)) == MATERIAL_TRANSMISSIVE) {
-    float transmitted = clamp(m.transmission * look_up(m.transmission_texture, uv0, uv1, false).r, 0.0, 1.0);
-    float metal = clamp(m.metallic * look_up(m.metallic_roughness_texture, uv0, uv1, false).b, 0.0, 1.0);
+    float transmitted = clamp(m.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
+    float metal = clamp(m.metallic * texels[TEXTURE_METALLIC_ROUGHNESS].b, 0.0, 1.0);
     passed = (transmitted * (1.0 - metal) * (1.0 - fresnel(min(abs(cosine), 1.0), 1.0, m.ior))) * base.rgb;
   }
   float a = (m.flags & MATERIAL_BLEND) != 0u ? clamp(base.a, 0.0, 1.0) : 1.0;

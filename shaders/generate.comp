@@ -214,8 +214,8 @@ vec3 absorbed(Parent p, Surface s, Material m, float t) {
 void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
-  Surface s = surface_at(triangle, at.barycentric, p.ray.direction);
-  Material m = materials[s.material];
+  Material m;
+  Surface s = surface_at(triangle, at.barycentric, p.ray.direction, m);
   if (VOLUMES) p.weight *= absorbed(p, s, m, t);
   float alpha = (m.flags & MATERIAL_BLEND) != 0u ? clamp(s.base.a, 0.0, 1.0) : 1.0;
   if (alpha < 1.0) s.transmission = 0.0;  // one straight ray goes on; see SHADING.md, 1

@@ -22,7 +22,8 @@ void main() {
     Ray ray = LOAD_RAY(rays, i);
     Corners corners = load_triangle(triangle);
     TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
-    Surface s = surface_at(triangle, at.barycentric, ray.direction);
+    Material material;
+    Surface s = surface_at(triangle, at.barycentric, ray.direction, material);
     words[LAYER_DEPTH] = dot(s.point - frame.eye, frame.forward);
     for (uint c = 0u; c < 3u; ++c) {
       words[LAYER_NORMAL + c] = s.normal[c];
@@ -32,7 +33,7 @@ void main() {
     words[LAYER_UV] = s.uv.x;
     words[LAYER_UV + 1u] = s.uv.y;
     words[LAYER_OBJECT] = uintBitsToFloat(s.object);
-    words[LAYER_MATERIAL] = uintBitsToFloat(materials[s.material].id);
+    words[LAYER_MATERIAL] = uintBitsToFloat(material.id);
   }
   for (uint w = 0u; w < LAYER_WORDS; ++w) layers[w * pixels + pixel] = words[w];
 }

@@ -23,15 +23,7 @@ using mat3 = glm::mat3;
 #define ROLE_COUNTERS 1
 #define ROLE_ARGS 2
 #define ROLE_INSTANCES 7
-#define ROLE_INDICES 8
-#define ROLE_POSITIONS 9
-#define ROLE_NORMALS 10
-#define ROLE_TANGENTS 11
-#define ROLE_UVS 12
-#define ROLE_COLORS 13
 #define ROLE_MATERIALS 14
-#define ROLE_TEXTURES 15
-#define ROLE_TEXELS 16
 #define ROLE_LIGHTS 17
 #define ROLE_RAYS 19
 #define ROLE_HITS 20
@@ -194,13 +186,29 @@ SHEAF_CONST LIGHT_DIRECTIONAL = 0u;
 SHEAF_CONST LIGHT_POINT = 1u;
 SHEAF_CONST LIGHT_SPOT = 2u;
 
+// Bits of TextureUse::flags; bits 0–1 wrap s, 2–3 wrap t.
+SHEAF_CONST TEXTURE_NEAREST = 16u;
+SHEAF_CONST TEXTURE_UV1 = 32u;
+SHEAF_CONST TEXTURE_HERE = 64u;
+
+// Places in Material::uses; what shadow rays ask comes first.
+SHEAF_CONST TEXTURE_BASE_COLOR = 0u;
+SHEAF_CONST TEXTURE_METALLIC_ROUGHNESS = 1u;
+SHEAF_CONST TEXTURE_TRANSMISSION = 2u;
+SHEAF_CONST TEXTURE_NORMAL = 3u;
+SHEAF_CONST TEXTURE_OCCLUSION = 4u;
+SHEAF_CONST TEXTURE_EMISSIVE = 5u;
+SHEAF_CONST TEXTURES = 6u;
+
 struct TextureUse {
   vec2 offset;
   vec2 scale;
-  float rotation;
+  vec2 turn;         // cosine and sine of the rotation
   float strength;
-  uint texture;  // NO_INDEX: none
-  uint uv_set;
+  uint flags;
+  uint first_texel;
+  uint width;
+  uint height;
 };
 
 struct Material {
@@ -215,19 +223,7 @@ struct Material {
   uint flags;
   uint volume;      // 1 … 255 for volumes, else 0; volume n is material n − 1 of the buffer
   uint id;          // material of the file + 1
-  TextureUse base_color_texture;
-  TextureUse metallic_roughness_texture;
-  TextureUse normal_texture;
-  TextureUse occlusion_texture;
-  TextureUse emissive_texture;
-  TextureUse transmission_texture;
-};
-
-struct Texture {
-  uint first_texel;
-  uint width;
-  uint height;
-  uint flags;  // bits 0–1 wrap s, 2–3 wrap t, 4 nearest
+  TextureUse uses[TEXTURES];
 };
 
 struct Instance {
@@ -288,6 +284,14 @@ struct Frame {      // per frame and sample
   uint tile_height;
   uvec2 triangles_at;  // device addresses, low word first: see memory.glsl
   uvec2 nodes_at;
+  uvec2 indices_at;
+  uvec2 positions_at;
+  uvec2 normals_at;
+  uvec2 tangents_at;
+  uvec2 uvs_at;
+  uvec2 colors_at;
+  uvec2 dynamic_at;
+  uvec2 texels_at;
 };
 
 struct Deform {     // one deforming instance's vertices
@@ -306,8 +310,8 @@ struct Deform {     // one deforming instance's vertices
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TextureUse) == 32);
-static_assert(sizeof(Material) == 64 + 4 + 6 * 32 || sizeof(Material) % 4 == 0);
+static_assert(sizeof(TextureUse) == 44);
+static_assert(sizeof(Material) == 72 + 6 * 44);
 static_assert(sizeof(Instance) == 4 * (21 + 1 + 11));
 }  // namespace sheaf::gpu
 #endif

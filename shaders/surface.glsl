@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Everything a hit needs to know about the surface there (SHADING.md, Geometry and Material).
 #include "attributes.glsl"
-BUFFER(ROLE_NORMALS, readonly, vec3, normals);
-BUFFER(ROLE_TANGENTS, readonly, vec4, tangents);
-BUFFER(ROLE_DYNAMIC, readonly, vec3, dynamic_vertices);  // three vec3 a vertex: position, normal, tangent (world)
 
 layout(constant_id = 4) const bool TEXTURED_NORMALS = true;
 
@@ -22,7 +19,6 @@ struct Surface {
   float transmission;
   vec2 uv;
   uint object;
-  uint material;
 };
 
 vec3 transform_direction(Instance i, vec3 v) { return vec3(dot(i.row0, v), dot(i.row1, v), dot(i.row2, v)); }
@@ -35,29 +31,31 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
   return size > 0.0 && size < INFINITY ? v / size : otherwise;
 }
 
-vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 geometric, vec2 uv0, vec2 uv1) {
+vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 geometric, vec3 mapped) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
-  vec3 n = is_dynamic ? dynamic_vertices[d.x + 1u] * b.x + dynamic_vertices[d.y + 1u] * b.y + dynamic_vertices[d.z + 1u] * b.z
-                      : transform_normal(instance, normals[s.x] * b.x + normals[s.y] * b.y + normals[s.z] * b.z);
+  vec3 n = is_dynamic ? load_dynamic(d.x + 1u) * b.x + load_dynamic(d.y + 1u) * b.y + load_dynamic(d.z + 1u) * b.z
+                      : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
   n = safe_normalize(n, geometric);
-  if (!TEXTURED_NORMALS || material.normal_texture.texture == NO_INDEX || instance.tangent == NO_INDEX) return n;
+  if (!TEXTURED_NORMALS || (material.uses[TEXTURE_NORMAL].flags & TEXTURE_HERE) == 0u || instance.tangent == NO_INDEX) return n;
   uvec3 w = v + instance.tangent;
-  vec4 tangent = tangents[w.x] * b.x + tangents[w.y] * b.y + tangents[w.z] * b.z;
-  vec3 t = is_dynamic ? dynamic_vertices[d.x + 2u] * b.x + dynamic_vertices[d.y + 2u] * b.y + dynamic_vertices[d.z + 2u] * b.z
+  vec4 first_tangent = load_tangent(w.x);
+  vec4 tangent = first_tangent * b.x + load_tangent(w.y) * b.y + load_tangent(w.z) * b.z;
+  vec3 t = is_dynamic ? load_dynamic(d.x + 2u) * b.x + load_dynamic(d.y + 2u) * b.y + load_dynamic(d.z + 2u) * b.z
                       : transform_direction(instance, tangent.xyz);
   t = safe_normalize(t, vec3(0));
-  vec3 bitangent = cross(n, t) * (tangents[w.x].w < 0.0 ? -1.0 : 1.0) * instance.determinant_sign;
-  vec3 texel = look_up(material.normal_texture, uv0, uv1, false).xyz * 2.0 - 1.0;
-  float strength = material.normal_texture.strength;
+  vec3 bitangent = cross(n, t) * (first_tangent.w < 0.0 ? -1.0 : 1.0) * instance.determinant_sign;
+  vec3 texel = mapped * 2.0 - 1.0;
+  float strength = material.uses[TEXTURE_NORMAL].strength;
   return safe_normalize(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
 }
 
-Surface surface_at(uint triangle, vec3 b, vec3 direction) {
+Surface surface_at(uint triangle, vec3 b, vec3 direction, out Material material) {
   Corners corners = load_triangle(triangle);
-  Instance instance = instances[instance_of(corners)];
-  Material material = materials[instance.material];
+  Looks looks = looks_of(instance_of(corners));
+  Instance instance = looks.instance;
+  material = looks.material;
   uvec3 v = triangle_vertices(instance, triangle);
   vec3 v0 = corners.a, v1 = corners.b, v2 = corners.c;
   Surface s;
@@ -69,20 +67,21 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction) {
   s.reach = max_of(max(max(abs(v0 - point), abs(v1 - point)), abs(v2 - point)));
   vec3 g = safe_normalize(cross(v1 - v0, v2 - v0), -direction) * instance.determinant_sign;
   vec2 uv0 = interpolate_uv(instance.uv0, v, b), uv1 = interpolate_uv(instance.uv1, v, b);
-  vec3 n = shading_normal(instance, material, v, b, g, uv0, uv1);
+  vec4 texels[TEXTURES];
+  look_up_all(instance.material, TEXTURES, uv0, uv1, texels);
+  vec3 n = shading_normal(instance, material, v, b, g, texels[TEXTURE_NORMAL].xyz);
   s.front = dot(g, direction) < 0.0;
   s.geometric = s.front ? g : -g;
   s.normal = s.front ? n : -n;
-  s.base = base_color_at(instance, material, v, b, uv0, uv1);
-  vec4 mr = look_up(material.metallic_roughness_texture, uv0, uv1, false);
+  s.base = base_color_at(instance, material, v, b, texels[TEXTURE_BASE_COLOR]);
+  vec4 mr = texels[TEXTURE_METALLIC_ROUGHNESS];
   s.metallic = clamp(material.metallic * mr.b, 0.0, 1.0);
   s.roughness = clamp(material.roughness * mr.g, 0.0, 1.0);
-  s.emission = material.emissive * look_up(material.emissive_texture, uv0, uv1, true).rgb;
-  s.occlusion = 1.0 + material.occlusion_texture.strength * (look_up(material.occlusion_texture, uv0, uv1, false).r - 1.0);
-  s.transmission = clamp(material.transmission * look_up(material.transmission_texture, uv0, uv1, false).r, 0.0, 1.0);
+  s.emission = material.emissive * texels[TEXTURE_EMISSIVE].rgb;
+  s.occlusion = 1.0 + material.uses[TEXTURE_OCCLUSION].strength * (texels[TEXTURE_OCCLUSION].r - 1.0);
+  s.transmission = clamp(material.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
   s.uv = uv0;
   s.object = instance.object;
-  s.material = instance.material;
   return s;
 }
 

@@ -47,25 +47,28 @@ Extent extent_of(Extent mine) {
 }
 
 Beam load_bundle() {
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
+    r_triangle[v] = NO_INDEX;
+    r_stops[v] = ivec3(0);
+  }
   Extent own = Extent(vec3(INFINITY), vec3(-INFINITY), vec3(INFINITY), vec3(-INFINITY), INFINITY);
   float own_far = -INFINITY;
-  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
+  [[dont_unroll]] for (uint v = 0u; v < VECTORS; ++v) {
     uint k = v * LANES + lane;
     uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
     Ray ray = LOAD_RAY(rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
-    r_origin[v] = s.origin;
-    r_inverse[v] = s.inverse;
-    r_shear[v] = vec3(s.sx, s.sy, s.sz);
-    r_axis[v] = s.axis;
-    r_tmin[v] = ray.tmin;
-    r_t[v] = k < ray_count ? ray.tmax : -INFINITY;
-    r_end[v] = ray.tmax;
-    r_slot[v] = slot;
-    r_triangle[v] = NO_INDEX;
-    if (ANY_HIT && TRANSLUCENT) r_stops[v] = ivec3(0);
+    float limit = k < ray_count ? ray.tmax : -INFINITY;
+    PUT(r_origin, v, s.origin);
+    PUT(r_inverse, v, s.inverse);
+    PUT(r_shear, v, vec3(s.sx, s.sy, s.sz));
+    PUT(r_axis, v, s.axis);
+    PUT(r_tmin, v, ray.tmin);
+    PUT(r_t, v, limit);
+    PUT(r_end, v, ray.tmax);
+    PUT(r_slot, v, slot);
     Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
-    float far = max_lanes(r_t[v]);
+    float far = max_lanes(limit);
     if (lane == v % LANES) {
       own = e;  // with more vectors than lanes the last wins: then vector_beam is not used
       own_far = far;
@@ -254,11 +257,21 @@ void walk(Beam beam, Cone cone) {
 }
 
 void store(uint v) {
+  uint slot, triangle;
+  float t;
+  PICK(slot, r_slot, v);
+  PICK(triangle, r_triangle, v);
+  if (ANY_HIT)
+    PICK(t, r_end, v)
+  else
+    PICK(t, r_t, v)
   if (v * LANES + lane >= ray_count) return;
-  uint slot = r_slot[v];
-  hits[slot] = r_triangle[v] == NO_INDEX ? NO_HIT : pack_hit(ANY_HIT ? r_end[v] : r_t[v], r_triangle[v]);
-  if (ANY_HIT && TRANSLUCENT)
-    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = r_stops[v][c];
+  hits[slot] = triangle == NO_INDEX ? NO_HIT : pack_hit(t, triangle);
+  if (ANY_HIT && TRANSLUCENT) {
+    ivec3 sum;
+    PICK(sum, r_stops, v);
+    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = sum[c];
+  }
   if (PIXEL_COUNTED)
     count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / VECTORS);
 }
@@ -274,7 +287,7 @@ void main() {
   octant = octant_of(node.axis);
   Beam beam = load_bundle();
   walk(beam, cone_of(node));
-  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) store(v);
+  [[dont_unroll]] for (uint v = 0u; v < VECTORS; ++v) store(v);
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
   count_tests(push.kind, STAT_RAY_BOX, box_tests);

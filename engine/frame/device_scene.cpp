@@ -58,22 +58,22 @@ glm::dmat4 translation(const glm::dvec3& t) {
 DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& scene, const RenderSettings& settings,
                          const Plan& plan)
     : device_(device), scene_(scene), plan_(plan), layout_(lay_out(scene, settings)) {
-  indices_ = upload(device, recorder, "indices", layout_.indices);
-  positions_ = upload(device, recorder, "positions", layout_.positions);
-  normals_ = upload(device, recorder, "normals", layout_.normals);
-  tangents_ = upload(device, recorder, "tangents", layout_.tangents);
-  uvs_ = upload(device, recorder, "texture coordinates", layout_.uvs);
-  colors_ = upload(device, recorder, "vertex colors", layout_.colors);
+  indices_ = upload(device, recorder, "indices", layout_.indices, by_address);
+  positions_ = upload(device, recorder, "positions", layout_.positions, by_address);
+  normals_ = upload(device, recorder, "normals", layout_.normals, by_address);
+  tangents_ = upload(device, recorder, "tangents", layout_.tangents, by_address);
+  uvs_ = upload(device, recorder, "texture coordinates", layout_.uvs, by_address);
+  colors_ = upload(device, recorder, "vertex colors", layout_.colors, by_address);
   materials_ = upload(device, recorder, "materials", layout_.materials);
-  textures_ = upload(device, recorder, "textures", layout_.textures);
-  texels_ = upload(device, recorder, "texels", layout_.texels);
+  texels_ = upload(device, recorder, "texels", layout_.texels, by_address);
   deforms_ = upload(device, recorder, "deforming instances", layout_.deforms);
   joints_ = upload(device, recorder, "joints", layout_.joints);
   morphs_ = upload(device, recorder, "morph targets", layout_.morphs);
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "triangles", layout_.triangles * gpu::TRIANGLE_WORDS * 4, Kind::device, by_address);
   instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload);
-  dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3));
+  dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3), Kind::device,
+                    by_address);
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
   weights_ = Buffer(device, "morph weights", std::uint64_t{layout_.morph_weights} * 4, Kind::upload);
   if (plan.object_hierarchy) {
@@ -105,15 +105,7 @@ DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& 
 }
 
 void DeviceScene::bind(Recorder& r) const {
-  r.bind(ROLE_INDICES, indices_);
-  r.bind(ROLE_POSITIONS, positions_);
-  r.bind(ROLE_NORMALS, normals_);
-  r.bind(ROLE_TANGENTS, tangents_);
-  r.bind(ROLE_UVS, uvs_);
-  r.bind(ROLE_COLORS, colors_);
   r.bind(ROLE_MATERIALS, materials_);
-  r.bind(ROLE_TEXTURES, textures_);
-  r.bind(ROLE_TEXELS, texels_);
   r.bind(ROLE_INSTANCES, instances_);
   r.bind(ROLE_LIGHTS, lights_);
   r.bind(ROLE_DYNAMIC, dynamic_);
@@ -129,6 +121,14 @@ void DeviceScene::set_addresses(gpu::Frame& frame) const {
     return glm::uvec2(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U));
   };
   frame.triangles_at = words(triangles_.address());
+  frame.indices_at = words(indices_.address());
+  frame.positions_at = words(positions_.address());
+  frame.normals_at = words(normals_.address());
+  frame.tangents_at = words(tangents_.address());
+  frame.uvs_at = words(uvs_.address());
+  frame.colors_at = words(colors_.address());
+  frame.dynamic_at = words(dynamic_.address());
+  frame.texels_at = words(texels_.address());
   if (nodes_) frame.nodes_at = words(nodes_.address());
 }
 

@@ -56,7 +56,7 @@ class DeviceScene {
   const Scene& scene_;
   const Plan& plan_;
   SceneLayout layout_;
-  Buffer indices_, positions_, normals_, tangents_, uvs_, colors_, materials_, textures_, texels_;
+  Buffer indices_, positions_, normals_, tangents_, uvs_, colors_, materials_, texels_;
   Buffer triangles_, instances_, lights_, nodes_, dynamic_;
   Buffer deforms_, joints_, morphs_, matrices_, weights_;
   Buffer triangle_work_, vertex_work_, refit_work_, top_staging_;

@@ -14,8 +14,22 @@ namespace {
 
 constexpr std::size_t max_volumes = 255;  // a byte of a ray's medium stack
 
-gpu::TextureUse lay_out_use(const TextureUse& use) {
-  return {use.offset, use.scale, use.rotation, use.strength, use.texture, use.uv_set};
+// `first`: where each image's texels start. A texture without an image reads as none.
+gpu::TextureUse lay_out_use(const Scene& scene, const std::vector<std::uint32_t>& first, const TextureUse& use) {
+  gpu::TextureUse g{};
+  g.strength = use.strength;
+  if (!use.present()) return g;
+  const Texture& texture = scene.textures[use.texture];
+  if (texture.image == none || scene.images[texture.image].width == 0) return g;
+  g.offset = use.offset;
+  g.scale = use.scale;
+  g.turn = {static_cast<float>(std::cos(double{use.rotation})), static_cast<float>(std::sin(double{use.rotation}))};
+  g.first_texel = first[texture.image];
+  g.width = scene.images[texture.image].width;
+  g.height = scene.images[texture.image].height;
+  g.flags = static_cast<std::uint32_t>(texture.wrap_s) | static_cast<std::uint32_t>(texture.wrap_t) << 2U |
+            (texture.nearest ? gpu::TEXTURE_NEAREST : 0) | (use.uv_set == 1 ? gpu::TEXTURE_UV1 : 0) | gpu::TEXTURE_HERE;
+  return g;
 }
 
 // Stops (powers of two) of absorption a metre: color^(t/distance) = 2^(−stops·t).
@@ -42,7 +56,8 @@ std::uint32_t flags_of(const Material& material, const RenderSettings& settings)
   return flags;
 }
 
-gpu::Material lay_out_material(const Material& m, const RenderSettings& settings) {
+gpu::Material lay_out_material(const Scene& scene, const std::vector<std::uint32_t>& first, const Material& m,
+                               const RenderSettings& settings) {
   gpu::Material g{};
   g.base_color = m.base_color;
   g.emissive = m.emissive;
@@ -53,16 +68,16 @@ gpu::Material lay_out_material(const Material& m, const RenderSettings& settings
   g.ior = m.ior;
   g.absorption = absorption(m);
   g.flags = flags_of(m, settings);
-  g.base_color_texture = lay_out_use(m.base_color_texture);
-  g.metallic_roughness_texture = lay_out_use(m.metallic_roughness_texture);
-  g.normal_texture = lay_out_use(m.normal_texture);
-  g.occlusion_texture = lay_out_use(m.occlusion_texture);
-  g.emissive_texture = lay_out_use(m.emissive_texture);
-  g.transmission_texture = lay_out_use(m.transmission_texture);
+  g.uses[gpu::TEXTURE_BASE_COLOR] = lay_out_use(scene, first, m.base_color_texture);
+  g.uses[gpu::TEXTURE_METALLIC_ROUGHNESS] = lay_out_use(scene, first, m.metallic_roughness_texture);
+  g.uses[gpu::TEXTURE_NORMAL] = lay_out_use(scene, first, m.normal_texture);
+  g.uses[gpu::TEXTURE_OCCLUSION] = lay_out_use(scene, first, m.occlusion_texture);
+  g.uses[gpu::TEXTURE_EMISSIVE] = lay_out_use(scene, first, m.emissive_texture);
+  g.uses[gpu::TEXTURE_TRANSMISSION] = lay_out_use(scene, first, m.transmission_texture);
   return g;
 }
 
-void lay_out_textures(const Scene& scene, SceneLayout& layout) {
+std::vector<std::uint32_t> lay_out_images(const Scene& scene, SceneLayout& layout) {
   std::vector<std::uint32_t> first;
   for (const auto& image : scene.images) {
     first.push_back(static_cast<std::uint32_t>(layout.texels.size()));
@@ -70,17 +85,7 @@ void lay_out_textures(const Scene& scene, SceneLayout& layout) {
     layout.texels.resize(at + texels);
     if (texels != 0) std::memcpy(&layout.texels[at], image.rgba.data(), texels * 4);
   }
-  for (const auto& texture : scene.textures) {
-    gpu::Texture t{};
-    if (texture.image != none) {
-      t.first_texel = first[texture.image];
-      t.width = scene.images[texture.image].width;
-      t.height = scene.images[texture.image].height;
-    }
-    t.flags = static_cast<std::uint32_t>(texture.wrap_s) | static_cast<std::uint32_t>(texture.wrap_t) << 2U |
-              (texture.nearest ? 16U : 0U);
-    layout.textures.push_back(t);
-  }
+  return first;
 }
 
 }  // namespace
@@ -92,20 +97,15 @@ std::vector<std::uint32_t> lay_out_materials(const Scene& scene, const RenderSet
                                              [&](auto m) { return is_volume(scene.materials[m], settings); });
   const auto volume_count = static_cast<std::size_t>(volumes - by_place.begin());
   if (volume_count > max_volumes) throw limit_error(scene.path, "more than 255 materials with a volume");
+  const auto first_texel = lay_out_images(scene, layout);
   std::vector<std::uint32_t> place(scene.materials.size());
   for (std::uint32_t p = 0; p < by_place.size(); ++p) {
     place[by_place[p]] = p;
-    auto material = lay_out_material(scene.materials[by_place[p]], settings);
+    auto material = lay_out_material(scene, first_texel, scene.materials[by_place[p]], settings);
     material.volume = p < volume_count ? p + 1 : 0;
     material.id = by_place[p] + 1;
     layout.materials.push_back(material);
   }
-  lay_out_textures(scene, layout);
-  // A texture without an image reads as none.
-  for (auto& material : layout.materials)
-    for (auto* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-                      &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture})
-      if (use->texture != none && layout.textures[use->texture].width == 0) use->texture = none;
   return place;
 }
 

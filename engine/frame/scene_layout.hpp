@@ -30,7 +30,6 @@ struct SceneLayout {
   std::vector<glm::vec4> tangents, colors;
   std::vector<glm::vec2> uvs;
   std::vector<gpu::Material> materials;
-  std::vector<gpu::Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<gpu::Deform> deforms;   // of the deforming instances, in their order
   std::vector<std::uint32_t> joints;  // 12 words a skinned vertex: 4 of joint pairs, 8 of weights
