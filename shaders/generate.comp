@@ -116,15 +116,16 @@ void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec
   }
   vec3 target = offset_origin(s, l, light.kind == LIGHT_DIRECTIONAL ? 0.0 : distance);
   vec3 origin = light.position, direction = target - light.position;
-  float tmax = length(direction);
+  float tmin = 0.25 * frame.box_pad, tmax = length(direction);  // SHADING.md, Lights: a lamp's own surface does not hide it
   if (light.kind == LIGHT_DIRECTIONAL) {
     origin = target;
     direction = l;
+    tmin = 0.0;
     tmax = INFINITY;
   } else {
     direction = tmax > 0.0 ? direction / tmax : -l;
   }
-  STORE_RAY(shadow_rays, slot, origin, direction, 0.0, tmax, carried);
+  STORE_RAY(shadow_rays, slot, origin, direction, tmin, tmax, carried);
   RAYS(shadow_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
   RAYS(shadow_rays, RAY_MEDIUM, slot) = uintBitsToFloat(index);
 }

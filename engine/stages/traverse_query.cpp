@@ -66,7 +66,7 @@ void TraverseQuery::build(Recorder& recorder, Structure& structure,
 }
 
 void TraverseQuery::objects_moved(Recorder& recorder, const Motion& motion) {
-  if (motion.moved_instances == 0) return;
+  if (motion.moved_instances == 0 || context_.scene.triangles() == 0) return;
   const std::uint32_t triangles = context_.scene.triangles();
   recorder.stage("objects");
   recorder.bind(ROLE_BOXES, boxes_);
@@ -96,6 +96,11 @@ void TraverseQuery::objects_moved(Recorder& recorder, const Motion& motion) {
 
 void TraverseQuery::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
   recorder.stage("traverse");
+  if (context_.scene.triangles() == 0) {  // no structure is built of nothing
+    recorder.fill(list.hits, 0xFFFFFFFFU);
+    if (list.optical_depth) recorder.fill(list.optical_depth, 0);
+    return;
+  }
   list.bind(recorder);
   recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, kind, gpu::ARGS_RAYS);
 }

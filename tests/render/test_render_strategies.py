@@ -68,7 +68,7 @@ def test_traced_camera_rays_agree_but_at_edges(sheaf, scene):
     other = raster.channels["id.object"] != trace.channels["id.object"]
     assert not (other & ~beside_an_edge(ids)).any()
     differs = (raster.rgba.view(np.uint16) != trace.rgba.view(np.uint16)).any(-1)
-    assert differs.mean() < 0.01
+    assert differs.mean() < 0.02
     # A sample beside an inner edge may also take the neighbouring triangle of the same object: no visible step there.
     within = differs & ~other
     np.testing.assert_allclose(raster.rgb[within], trace.rgb[within], rtol=0.02, atol=0.002)
