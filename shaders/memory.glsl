@@ -26,6 +26,10 @@ vec3 load_dynamic(uint i) { return OneVec3(pack64(frame.dynamic_at) + uint64_t(i
 vec4 load_tangent(uint i) { return OneVec4(pack64(frame.tangents_at) + uint64_t(i * 16u)).v; }
 vec4 load_color(uint i) { return OneVec4(pack64(frame.colors_at) + uint64_t(i * 16u)).v; }
 
+vec3 load_corner(uint triangle, uint corner) {
+  return OneVec3(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS) + 12u * corner)).v;
+}
+
 struct Corners {
   vec3 a, b, c;
   uint instance;  // and flags, see shared.h

@@ -10,8 +10,7 @@ layout(location = 0) flat out uint triangle;
 void main() {
   triangle = gl_VertexIndex / 3u;
   uint corner = gl_VertexIndex % 3u;
-  Corners corners = load_triangle(triangle);
-  vec3 p = corner == 0u ? corners.a : corner == 1u ? corners.b : corners.c;
+  vec3 p = load_corner(triangle, corner);
   vec3 v = p - frame.eye;
   float x = dot(v, frame.right) / dot(frame.right, frame.right);
   float y = dot(v, frame.up) / dot(frame.up, frame.up);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 
 namespace sheaf {
@@ -25,19 +24,27 @@ double probe(const Device& device, const Scene& scene, const Features& features,
 
 Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
                        const RenderSettings& settings, const FrameRequest& first) {
-  constexpr double probe_pixels = 48 * 1024;  // enough bundles to tell, few enough to cost little
+  // A band of the frame at its own resolution: how tight bundles are depends on it.
+  constexpr std::uint64_t probe_pixels = 96 * 1024;  // enough bundles to tell, few enough to cost little
+  const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+  Choice choice;
+  if (pixels * settings.samples <= probe_pixels) {
+    choice.strategy = Strategy::bvh;
+    choice.because = "a frame of " + std::to_string(pixels * settings.samples) + " samples is too small to probe for";
+    return choice;
+  }
   RenderSettings small = settings;
-  const double scale = std::min(1.0, std::sqrt(probe_pixels / (static_cast<double>(settings.width) * settings.height)));
-  small.width = std::max(1U, static_cast<std::uint32_t>(settings.width * scale));
-  small.height = std::max(1U, static_cast<std::uint32_t>(settings.height * scale));
   small.samples = 1;
   small.counted = false;
   small.layers = {};
-  Choice choice;
+  FrameRequest band = first;
+  const auto rows =
+      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(probe_pixels / settings.width / 8 * 8, 1, settings.height));
+  band.only = Tile{0, (settings.height - rows) / 2, settings.width, rows};
   std::string measured;
   double best = 0;
   for (const auto candidate : {Strategy::hybrid, Strategy::bvh}) {
-    const double ms = probe(device, scene, features, small, candidate, first);
+    const double ms = probe(device, scene, features, small, candidate, band);
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), "%s%s %.1f ms", measured.empty() ? "" : ", ", name_of(candidate), ms);
     measured += text.data();
@@ -46,8 +53,7 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
       choice.strategy = candidate;
     }
   }
-  choice.because = "fastest of a probe of " + std::to_string(small.width) + "x" + std::to_string(small.height) +
-                   " pixels: " + measured;
+  choice.because = "fastest of a probe of " + std::to_string(rows) + " rows: " + measured;
   return choice;
 }
 

@@ -98,7 +98,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
 
   const Motion motion = scene_.update(request.pose, request.camera, recorder_);
   bind_all();
-  const Tile whole{0, 0, settings_.width, settings_.height};
+  const Tile whole = request.only.value_or(Tile{0, 0, settings_.width, settings_.height});
   set_frame(request.camera, 0, whole);
   animate_.record(recorder_, scene_, motion);
   objects_.record(recorder_, scene_, motion);

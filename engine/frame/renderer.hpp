@@ -30,6 +30,7 @@ struct FrameRequest {
   double time_s = 0;
   Pose pose;
   CameraView camera;
+  std::optional<Tile> only;  // no more than this part of the frame, for a probe
 };
 
 struct RenderedFrame {
