@@ -41,6 +41,22 @@ glm::vec3 parse_color(const std::string& option, const std::string& text) {
   return color;
 }
 
+double parse_number(const std::string& option, const std::string& text, const std::string& part) {
+  char* end = nullptr;
+  const double value = std::strtod(part.c_str(), &end);
+  if (part.empty() || *end != '\0') throw bad(option, text, "must be a number, or a fraction such as 24000/1001");
+  return value;
+}
+
+double parse_fps(const std::string& text) {
+  const auto slash = text.find('/');
+  double fps = parse_number("fps", text, text.substr(0, slash));
+  if (slash != std::string::npos) fps /= parse_number("fps", text, text.substr(slash + 1));
+  if (!(fps > 0 && fps <= 1e6))
+    throw Error(ErrorKind::input, "--fps " + text + ": must be above 0 and at most 1000000");
+  return fps;
+}
+
 template <typename T>
 T one_of(const std::string& option, const std::string& value, const std::vector<std::pair<std::string, T>>& choices) {
   std::string known;
@@ -60,7 +76,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--camera-node", o.camera_node, "camera of the scene: name or index");
   command.add_option("--scene-name", o.scene_name, "which glTF scene: name or index; default the file's own");
   command.add_option("--frames", o.frames, "A-B[:STEP] or N,M,...")->capture_default_str();
-  command.add_option("--fps", o.fps, "frame f shows time f / fps; default the camera path's, else 24");
+  command.add_option("--fps", o.fps_text,
+                     "frame f shows time f / fps, 24000/1001 for example; default the camera path's, else 24");
   command.add_option("--animation", o.animation, "name, index or all; default the first");
   command.add_option("--size", o.size, "WIDTHxHEIGHT")->capture_default_str();
   command.add_option("--spp", o.settings.samples, "samples a pixel")->capture_default_str();
@@ -100,8 +117,7 @@ void resolve_options(RenderOptions& o) {
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));
   if (!o.environment.empty()) s.environment = parse_color("environment", o.environment);
-  if (o.fps && !(*o.fps > 0 && *o.fps <= 1e6))
-    throw Error(ErrorKind::input, "--fps: must be above 0 and at most 1000000");
+  if (!o.fps_text.empty()) o.fps = parse_fps(o.fps_text);
   if (!o.camera.empty() && !o.camera_node.empty())
     throw Error(ErrorKind::usage, "--camera and --camera-node: only one of them can choose the camera");
   std::vector<std::string> layers;

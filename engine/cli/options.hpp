@@ -21,6 +21,7 @@ struct RenderOptions {
   std::string scene, out;
   std::string camera, camera_node, scene_name;
   std::string frames = "0";
+  std::string fps_text;
   std::optional<double> fps;
   std::string animation;
   std::string size = "1280x720";

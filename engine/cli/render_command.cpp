@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <thread>
 
@@ -42,7 +43,8 @@ class Job {
 
  private:
   void render_frame(std::int64_t number);
-  void write(RenderedFrame& frame, std::int64_t number, double time_s, const CameraView& camera);
+  void write(RenderedFrame frame, const FrameRequest& request);
+  void finish_writing();
   void save_stats(bool last);
   [[nodiscard]] bool already_there(std::int64_t number) const;
   [[nodiscard]] double seconds(std::int64_t number) const { return static_cast<double>(number) / fps_; }
@@ -59,6 +61,7 @@ class Job {
   std::unique_ptr<DumpWriter> dump_;
   RunStats stats_;
   Clock::time_point saved_ = Clock::now();
+  std::future<void> writing_;  // the frame before: compressed and written while the next one renders
 };
 
 Job::Job(RenderOptions& options, Progress& progress)
@@ -84,18 +87,18 @@ bool Job::already_there(std::int64_t number) const {
   return options_.resume && exr_is_whole(path, options_.settings.width, options_.settings.height);
 }
 
-void Job::write(RenderedFrame& frame, std::int64_t number, double time_s, const CameraView& camera) {
+void Job::write(RenderedFrame frame, const FrameRequest& request) {
+  const auto number = request.number;
   const auto begun = Clock::now();
   const auto path = (fs::path(options_.out) / names_.frame(number)).string();
-  const auto attributes = frame_attributes(scene_, options_.settings, camera, number, time_s, fps_, stats_.strategy);
+  const auto attributes =
+      frame_attributes(scene_, options_.settings, request.camera, number, request.time_s, fps_, stats_.strategy);
   if (options_.preview) {
     const auto preview = (fs::path(options_.out) / names_.preview(number)).string();
     write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
   }
   write_exr(path, frame.layers, attributes, parse_compression(options_.compression));
-  const double spent = milliseconds_since(begun);
-  frame.stats.stages_ms.emplace_back("write", spent);
-  frame.stats.wall_ms += spent;
+  frame.stats.stages_ms.emplace_back("write", milliseconds_since(begun));
   progress_.frame_done(number, path, frame.stats.wall_ms);
   stats_.frames.push_back(std::move(frame.stats));
 }
@@ -107,7 +110,17 @@ void Job::render_frame(std::int64_t number) {
   request.pose = evaluate_pose(scene_, animations_, request.time_s);
   request.camera = camera_.at(request.pose, request.time_s);
   RenderedFrame frame = source_->render(request);
-  write(frame, number, request.time_s, request.camera);
+  finish_writing();
+  writing_ = std::async(std::launch::async, [this, frame = std::move(frame), request = std::move(request)]() mutable {
+    write(std::move(frame), request);
+  });
+}
+
+// Rethrows what went wrong there.
+void Job::finish_writing() {
+  if (!writing_.valid()) return;
+  writing_.get();
+  save_stats(false);
 }
 
 void Job::save_stats(bool last) {
@@ -129,8 +142,8 @@ int Job::run() {
   for (const auto number : wanted) {
     if (interrupted() != 0) break;
     render_frame(number);
-    save_stats(false);
   }
+  finish_writing();
   save_stats(true);
   if (interrupted() != 0) {
     progress_.error(128 + interrupted(), "interrupted; whole frames are kept, --resume goes on from here");

@@ -25,8 +25,11 @@ def rotation_towards(eye: tuple[float, ...], target: tuple[float, ...]) -> list[
     back = [-f / size for f in forward]
     level = (back[2] ** 2 + back[0] ** 2) ** 0.5
     right = [back[2] / level, 0.0, -back[0] / level]
-    up = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2],
-          back[0] * right[1] - back[1] * right[0]]
+    up = [
+        back[1] * right[2] - back[2] * right[1],
+        back[2] * right[0] - back[0] * right[2],
+        back[0] * right[1] - back[1] * right[0],
+    ]
     w = (1 + right[0] + up[1] + back[2]) ** 0.5 / 2
     return [(up[2] - back[1]) / (4 * w), (back[0] - right[2]) / (4 * w), (right[1] - up[0]) / (4 * w), w]
 
@@ -39,15 +42,28 @@ def add_floor(gltf: dict[str, Any]) -> int:
     uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
     buffer, view, accessor = len(gltf["buffers"]), len(gltf["bufferViews"]), len(gltf["accessors"])
     gltf["buffers"].append({"byteLength": len(data), "uri": uri})
-    gltf["bufferViews"] += [{"buffer": buffer, "byteLength": 48}, {"buffer": buffer, "byteOffset": 48, "byteLength": 12}]
+    gltf["bufferViews"] += [
+        {"buffer": buffer, "byteLength": 48},
+        {"buffer": buffer, "byteOffset": 48, "byteLength": 12},
+    ]
     gltf["accessors"] += [
         {"bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3", "min": [x0, y, z0], "max": [x1, y, z1]},
         {"bufferView": view + 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
     ]
-    gltf["materials"].append({"name": "mirror", "pbrMetallicRoughness": {
-        "baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1, "roughnessFactor": 0}})
-    gltf["meshes"].append({"name": "floor", "primitives": [
-        {"attributes": {"POSITION": accessor}, "indices": accessor + 1, "material": len(gltf["materials"]) - 1}]})
+    gltf["materials"].append(
+        {
+            "name": "mirror",
+            "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1, "roughnessFactor": 0},
+        }
+    )
+    gltf["meshes"].append(
+        {
+            "name": "floor",
+            "primitives": [
+                {"attributes": {"POSITION": accessor}, "indices": accessor + 1, "material": len(gltf["materials"]) - 1}
+            ],
+        }
+    )
     gltf["nodes"].append({"name": "floor", "mesh": len(gltf["meshes"]) - 1})
     return len(gltf["nodes"]) - 1
 
@@ -56,13 +72,20 @@ def make(source: Path, folder: Path) -> Path:
     """Writes the scene into `folder` and returns its path."""
     gltf = json.loads(source.read_text())
     shutil.copytree(source.parent, folder, dirs_exist_ok=True)
+    for copy in folder.rglob("*"):
+        copy.chmod(copy.stat().st_mode | 0o200)  # the asset may be read-only
     added = [add_floor(gltf)]
     gltf.setdefault("extensions", {})["KHR_lights_punctual"] = {
-        "lights": [{"type": "point", "color": [1.0, 0.95, 0.85], "intensity": 120.0}]}
+        "lights": [{"type": "point", "color": [1.0, 0.95, 0.85], "intensity": 120.0}]
+    }
     gltf["extensionsUsed"] = sorted({*gltf.get("extensionsUsed", []), "KHR_lights_punctual"})
-    gltf["nodes"].append({"name": "lamp", "translation": list(LIGHT), "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    gltf["nodes"].append(
+        {"name": "lamp", "translation": list(LIGHT), "extensions": {"KHR_lights_punctual": {"light": 0}}}
+    )
     gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.05}}]
-    gltf["nodes"].append({"name": "camera", "translation": list(EYE), "rotation": rotation_towards(EYE, TARGET), "camera": 0})
+    gltf["nodes"].append(
+        {"name": "camera", "translation": list(EYE), "rotation": rotation_towards(EYE, TARGET), "camera": 0}
+    )
     added += [len(gltf["nodes"]) - 2, len(gltf["nodes"]) - 1]
     gltf["scenes"][gltf.get("scene", 0)]["nodes"] += added
     path = folder / "sponza_mirror.gltf"
