@@ -72,8 +72,8 @@ DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& 
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "triangles", layout_.triangles * gpu::TRIANGLE_WORDS * 4, Kind::device, by_address);
   instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload);
-  dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3), Kind::device,
-                    by_address);
+  dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3),
+                    Kind::device, by_address);
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
   weights_ = Buffer(device, "morph weights", std::uint64_t{layout_.morph_weights} * 4, Kind::upload);
   if (plan.object_hierarchy) {

@@ -38,9 +38,8 @@ def row(name: str, stats: dict[str, Any], aim: str) -> None:
     frame = min((f for f in stats["frames"] if f["stages"]), key=lambda f: f["wall_ms"])
     most = sorted(frame["stages"].items(), key=lambda s: -s[1])[:4]
     tests, rays = stats["totals"]["tests_per_ray"], sum(frame["rays"].values())
-    print(
-        f"{name:34} {frame['wall_ms'] / 1000:6.2f} s  (aim {aim})  {rays / 1e6:.2f} M rays, {frame['peak_device_mib']:.0f} MiB"
-    )
+    memory = f"{frame['peak_device_mib']:.0f} MiB"
+    print(f"{name:34} {frame['wall_ms'] / 1000:6.2f} s  (aim {aim})  {rays / 1e6:.2f} M rays, {memory}")
     print(f"{'':34} {', '.join(f'{stage} {ms:.0f}' for stage, ms in most)} ms; tests a ray {json.dumps(tests)}")
 
 
@@ -72,9 +71,8 @@ def main() -> None:
                 row(f"Sponza 1280x720 depth 2, {strategy}", render(sheaf, scene, folder, *options)[0], "2 s, 2048 MiB")
         options = ("--size", "160x90", "--frames", "0")
         render(sheaf, WHITTED, folder, *options)
-        print(
-            f"{'start to first frame, whitted 160x90':34} {render(sheaf, WHITTED, folder, *options)[1]:.2f} s  (aim 2 s)"
-        )
+        seconds = render(sheaf, WHITTED, folder, *options)[1]
+        print(f"{'start to first frame, 160x90':34} {seconds:6.2f} s  (aim 2 s)")
 
 
 if __name__ == "__main__":
