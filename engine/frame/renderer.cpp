@@ -21,6 +21,12 @@ double radical_inverse(std::uint32_t i) {
   return result;
 }
 
+// Root first; trees of different heights agree at the bottom.
+void add_levels(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& more) {
+  if (sum.size() < more.size()) sum.insert(sum.begin(), more.size() - sum.size(), 0);
+  for (std::size_t below = 1; below <= more.size(); ++below) sum[sum.size() - below] += more[more.size() - below];
+}
+
 }  // namespace
 
 Renderer::Renderer(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
@@ -148,6 +154,7 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
   recorder_.fill(memory_.stats, 0);
   records_.clear();
+  record_pairs_.clear();
   if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
   if (dump_ != nullptr) dump_->mark();
   for (std::uint32_t sample = 0; sample < settings_.samples; ++sample) {
@@ -213,6 +220,7 @@ void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
   if (records_.size() == max_records) return;  // deeper ones count in the totals only
   recorder_.copy(memory_.counters, memory_.records, gpu::COUNT_WORDS * 4, 0, records_.size() * gpu::COUNT_WORDS * 4);
   records_.emplace_back(generation, kind);
+  record_pairs_.push_back(tracer_->pairs_per_level());
 }
 
 void Renderer::collect_generations(RenderedFrame& out) {
@@ -233,6 +241,7 @@ void Renderer::collect_generations(RenderedFrame& out) {
       found->sort_reason = plan_.sorts ? "key changes in less than one ray of sixteen" : "strategy or --sort off";
     }
     found->rays += counters[gpu::COUNT_RAYS + kind];
+    add_levels(found->pairs_per_level, record_pairs_[r]);
     if (!plan_.sorts || kind == gpu::KIND_PRIMARY) continue;
     const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
     found->key_bits = layout.bits();

@@ -80,6 +80,7 @@ class Renderer {
   Resolve resolve_;
   std::unique_ptr<Tracer> tracer_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> records_;  // (generation, kind) of the tile's records
+  std::vector<std::vector<std::uint64_t>> record_pairs_;          // a record: Tracer::pairs_per_level
   DumpWriter* dump_ = nullptr;
   std::optional<ListDump> list_dump_;
 };

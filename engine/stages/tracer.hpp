@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "frame/device_scene.hpp"
 #include "frame/ray_lists.hpp"
@@ -30,6 +31,9 @@ class Tracer {
   virtual void objects_moved(Recorder&, const Motion&) {}
   /// The list is bound and compacted; its number of rays is on the device. Hits go to the list's slots.
   virtual void trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t generation) = 0;
+  /// Pairs of a node and an object that the last trace tested on each level, root first; none where levels are not
+  /// walked one by one.
+  [[nodiscard]] virtual std::vector<std::uint64_t> pairs_per_level() const { return {}; }
 };
 
 [[nodiscard]] std::unique_ptr<Tracer> make_tracer(const TraceContext& context);

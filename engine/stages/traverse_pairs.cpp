@@ -75,6 +75,7 @@ void TraversePairs::test(Recorder& recorder, const Walk& walk, std::uint32_t lev
     std::uint32_t kind, level, first_word, nodes, candidates, offset, seeds;
   } push{walk.kind, level, walk.levels[level].first_word, walk.levels[level].nodes, candidates, offset, seeds};
   recorder.dispatch(test_, push, groups(candidates));
+  pairs_[level] += candidates;
 
   recorder.stage("compact");
   recorder.bind(ROLE_PAIRS_NEXT, survivors_[level]);
@@ -158,6 +159,7 @@ void TraversePairs::reset_hits(Recorder& recorder, std::uint32_t kind) {
 }
 
 void TraversePairs::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
+  pairs_.clear();
   list.bind(recorder);
   if (context_.plan.sorts && kind != gpu::KIND_PRIMARY) sort_.record(recorder, context_, kind);
   recorder.stage("intersect");
@@ -167,6 +169,7 @@ void TraversePairs::trace(Recorder& recorder, const RayList& list, std::uint32_t
   Walk walk;
   walk.kind = kind;
   walk.levels = hierarchy_levels(rays);
+  pairs_.assign(walk.levels.size(), 0);
   hierarchy_.record(recorder, context_.memory, kind, walk.levels);
   const auto top = static_cast<std::uint32_t>(walk.levels.size() - 1);
   std::uint32_t level = top;

@@ -21,6 +21,7 @@ class TraversePairs final : public Tracer {
   explicit TraversePairs(const TraceContext& context);
   void objects_moved(Recorder& recorder, const Motion& motion) override;
   void trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t generation) override;
+  [[nodiscard]] std::vector<std::uint64_t> pairs_per_level() const override { return {pairs_.rbegin(), pairs_.rend()}; }
 
  private:
   struct Walk {  // one list's traversal
@@ -47,7 +48,8 @@ class TraversePairs final : public Tracer {
   Kernel spheres_, test_, nearest_, any_;
   Scan compact_;
   Buffer triangle_spheres_, mesh_spheres_, candidates_, flags_, seeds_, block_sums_, counter_readback_, collected_;
-  std::vector<Buffer> survivors_;  // a level
+  std::vector<Buffer> survivors_;     // a level
+  std::vector<std::uint64_t> pairs_;  // tested by the last trace, a level
 };
 
 }  // namespace sheaf

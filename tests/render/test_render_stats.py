@@ -176,3 +176,17 @@ def test_stats_elsewhere(sheaf, tmp_path):
     """A file in a folder that is not there is an error that names it, not a lost run."""
     run = sheaf.render("unlit", "--stats", tmp_path / "nowhere" / "stats.json", size="16x9", code=6)
     assert "stats.json" in run.stderr
+
+
+@pytest.mark.parametrize("strategy", ["crsh", "rsh"])
+def test_pairs_of_every_level_are_told(cornell, strategy):
+    """Root first. A pair of a node that has fewer than four children is made, and found not to be there: no test."""
+    frame = cornell[strategy]["frames"][0]
+    pairs = [g["pairs_per_level"] for g in frame["generations"]]
+    assert all(len(levels) > 1 and min(levels) > 0 for levels in pairs)
+    tests = sum(frame["tests"]["node_object"].values())
+    assert tests <= sum(map(sum, pairs)) < 1.2 * tests
+
+
+def test_no_pairs_where_no_levels_are_walked(cornell):
+    assert all(not g["pairs_per_level"] for g in cornell["bvh"]["frames"][0]["generations"])
