@@ -52,7 +52,6 @@ class DeviceScene {
   void build_top_level(Recorder& recorder, std::vector<std::vector<std::uint32_t>>& heights);
   Motion list_work(const std::vector<bool>& moved, Recorder& recorder);
 
-  const Device& device_;
   const Scene& scene_;
   const Plan& plan_;
   SceneLayout layout_;
