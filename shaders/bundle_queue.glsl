@@ -7,7 +7,6 @@ uint q_vector[QUEUE], q_triangle[QUEUE];
 float q_t[QUEUE];
 uint queued = 0u;  // of this lane
 
-bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
 bool queue_has_room() { return !asks_materials() || !any_lane(queued > QUEUE - LEAF_FILLS); }
 
 void queue_pending(uint v, Pending pending) {

@@ -22,6 +22,20 @@ vec3 on_grid(Grid g, uvec3 place) {
 // The byte of child c of an axis' eight.
 uint byte_of(uvec2 bytes, uint c) { return ((c < 4u ? bytes.x : bytes.y) >> (8u * (c & 3u))) & 255u; }
 
+struct Boxes {  // of a node's children
+  Grid grid;
+  uvec2 lx, ly, lz, hx, hy, hz;
+};
+
+void child_box(Boxes b, uint c, out vec3 lo, out vec3 hi) {
+  lo = on_grid(b.grid, uvec3(byte_of(b.lx, c), byte_of(b.ly, c), byte_of(b.lz, c)));
+  hi = on_grid(b.grid, uvec3(byte_of(b.hx, c), byte_of(b.hy, c), byte_of(b.hz, c)));
+}
+
+bool is_node(uint child) { return (child & CHILD_LEAF) == 0u; }
+uint leaf_first(uint child) { return child & 0x07FFFFFFu; }
+uint leaf_count(uint child) { return ((child >> 27) & 15u) + 1u; }
+
 uint octant_of(vec3 direction) { return (direction.x < 0.0 ? 1u : 0u) | (direction.y < 0.0 ? 2u : 0u) | (direction.z < 0.0 ? 4u : 0u); }
 
 // Children of a node stand in the slot of the octant they lie in (slot_order.hpp): visited in the order slot ^ octant they come

@@ -16,7 +16,7 @@ layout(push_constant) uniform Push {
 } push;
 
 void leaf_box(uint child, out vec3 lo, out vec3 hi) {
-  uint first = child & 0x07FFFFFFu, count = ((child >> 27) & 15u) + 1u;
+  uint first = leaf_first(child), count = leaf_count(child);
   lo = vec3(INFINITY);
   hi = vec3(-INFINITY);
   for (uint t = first; t < first + count; ++t) {
@@ -93,10 +93,10 @@ void main() {
     lo[c] = vec3(INFINITY);
     hi[c] = vec3(-INFINITY);
     if (child == CHILD_EMPTY) continue;
-    if ((child & CHILD_LEAF) != 0u)
-      leaf_box(child, lo[c], hi[c]);
-    else
+    if (is_node(child))
       node_box(child, lo[c], hi[c]);
+    else
+      leaf_box(child, lo[c], hi[c]);
     if (lo[c].x <= hi[c].x) there |= 1u << c;
     least = min(least, lo[c]);
     most = max(most, hi[c]);

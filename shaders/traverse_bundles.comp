@@ -16,13 +16,12 @@
 #include "lists.glsl"
 #include "counting.glsl"
 #include "ray_node.glsl"
-#include "node.glsl"
+#include "visit.glsl"
 #include "beam.glsl"
 BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_WORK, readonly, uint, work);
-layout(constant_id = 1) const bool ANY_HIT = false;
 layout(constant_id = 10) const uint LANES = 8;    // of a subgroup, which is the workgroup
 layout(constant_id = 11) const uint VECTORS = 8;  // BUNDLE / LANES
 layout(push_constant) uniform Push { uint kind; } push;
@@ -35,9 +34,8 @@ float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, âˆ
 uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
 ivec3 r_stops[VECTORS];
 Beam vector_beam;                                     // lane v: of vector v
-uint stack[STACK_SIZE];
-uint lane, ray_count, first_ray, octant;
-uint group = 0u, depth = 0u;                          // as in single_ray.glsl, the same in all lanes
+uint lane, ray_count, first_ray;
+Visit visit;                                          // the same in all lanes
 uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
 
 #include "bundle_queue.glsl"
@@ -88,23 +86,12 @@ struct Held {
   uvec2 low, high;
 };
 
-
 #define HELD(h, k) (LANES < 8u && (k) >= 4u ? subgroupBroadcast((h).high, (k) & 3u) : subgroupBroadcast((h).low, (k)))
-
-struct Boxes {
-  Grid grid;
-  uvec2 lx, ly, lz, hx, hy, hz;
-};
 
 Boxes load_boxes(uint node) {
   NodePairs words = node_pairs(node);
   Held h = Held(unpack32(words.pair[lane & 7u]), LANES < 8u ? unpack32(words.pair[4u + (lane & 3u)]) : uvec2(0));
   return Boxes(unpack_grid(HELD(h, 0u), HELD(h, 1u)), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u), HELD(h, 5u), HELD(h, 6u), HELD(h, 7u));
-}
-
-void child_box(Boxes b, uint c, out vec3 lo, out vec3 hi) {
-  lo = on_grid(b.grid, uvec3(byte_of(b.lx, c), byte_of(b.ly, c), byte_of(b.lz, c)));
-  hi = on_grid(b.grid, uvec3(byte_of(b.hx, c), byte_of(b.hy, c), byte_of(b.hz, c)));
 }
 
 Corners load_corners(uint triangle) {
@@ -127,31 +114,6 @@ uint entered_children(Beam beam, Cone cone, uint node) {
     entered |= lanes_where(enters) << base;
   }
   return entered;
-}
-
-void step_node(Beam beam, Cone cone, uint node) {
-  uint entered = in_visiting_order(entered_children(beam, cone, node) & 255u, octant);
-  if (entered == 0u) return;
-  if ((group & 255u) != 0u) {
-    stack[depth] = group;
-    ++depth;
-  }
-  group = (node << 8) | entered;
-}
-
-// The next child: a node or a leaf, and where it hangs (node Â· 8 + slot); CHILD_EMPTY at the end.
-uint next_child(out uint place) {
-  place = 0u;
-  if ((group & 255u) == 0u) {
-    if (depth == 0u) return CHILD_EMPTY;
-    --depth;
-    group = stack[depth];
-  }
-  uint slot = uint(findLSB(group & 255u)) ^ octant, node = group >> 8;
-  group &= group - 1u;
-  place = node * WIDE + slot;
-  uvec2 pair = unpack32(node_pairs(node).pair[(NODE_CHILD + slot) / 2u]);
-  return (slot & 1u) != 0u ? pair.y : pair.x;
 }
 
 // The rays of a vector at work.
@@ -214,7 +176,7 @@ void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
   vec2 range = slab(w.shear, lo, hi);
   bool enters = range.x <= range.y && range.y >= w.tmin && range.x <= w.best.t;
   if (v * LANES + lane < ray_count) ++box_tests;
-  uint first = leaf & 0x07FFFFFFu, last = any_lane(enters) ? first + ((leaf >> 27) & 15u) + 1u : first;
+  uint first = leaf_first(leaf), last = any_lane(enters) ? first + leaf_count(leaf) : first;
   for (uint triangle = first; triangle < last; ++triangle) test_triangle(triangle, enters, w);
   store_work(w);
 }
@@ -241,14 +203,14 @@ void walk(Beam beam, Cone cone) {
   uint current = 0u, place = 0u;
   while (current != CHILD_EMPTY) {
     while (current != CHILD_EMPTY && queue_has_room()) {
-      while ((current & CHILD_LEAF) == 0u) {
-        step_node(beam, cone, current);
-        current = next_child(place);
+      while (is_node(current)) {
+        visit_children(visit, current, entered_children(beam, cone, current) & 255u);
+        current = next_child(visit, place);
       }
-      while ((current & CHILD_LEAF) != 0u && current != CHILD_EMPTY && queue_has_room()) {
+      while (!is_node(current) && current != CHILD_EMPTY && queue_has_room()) {
         test_leaf(current, place);
         beam.farthest = farthest_hit();
-        current = next_child(place);
+        current = next_child(visit, place);
         if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;  // every shadow ray is blocked
       }
     }
@@ -284,7 +246,7 @@ void main() {
   first_ray = bundle * BUNDLE;
   ray_count = min(BUNDLE, rays_here - first_ray);
   RayNode node = LOAD_RAY_NODE(ray_nodes, bundle * RAY_NODE_WORDS);
-  octant = octant_of(node.axis);
+  visit = Visit(0u, 0u, octant_of(node.axis));
   Beam beam = load_bundle();
   walk(beam, cone_of(node));
   [[dont_unroll]] for (uint v = 0u; v < VECTORS; ++v) store(v);

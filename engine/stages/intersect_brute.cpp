@@ -7,13 +7,7 @@
 namespace sheaf {
 
 IntersectBrute::IntersectBrute(const TraceContext& c) : triangles_(c.scene.triangles()) {
-  const bool translucent = c.features.translucent() || c.features.masked;
-  auto make = [&](bool any_hit) {
-    const std::array constants{
-        SpecConstant{1, any_hit},   SpecConstant{2, c.features.masked},       SpecConstant{3, any_hit && translucent},
-        SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
-    return Kernel(c.device, "intersect_brute", constants);
-  };
+  auto make = [&](bool any_hit) { return Kernel(c.device, "intersect_brute", candidate_constants(c, any_hit)); };
   nearest_ = make(false);
   if (c.plan.shadows) any_ = make(true);
 }

@@ -10,6 +10,12 @@
 
 namespace sheaf {
 
+std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hit) {
+  const bool translucent = c.features.translucent() || c.features.masked;
+  return {{1, any_hit},   {2, c.features.masked},       {3, any_hit && translucent},
+          {6, c.counted}, {7, c.settings.layers.tests}, {9, c.features.textured}};
+}
+
 std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {
   switch (context.strategy) {
     case Strategy::bvh:

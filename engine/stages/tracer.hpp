@@ -24,6 +24,9 @@ struct TraceContext {
   bool counted;
 };
 
+/// Specialization constants of every kernel that intersects (shaders/candidate.glsl, counting.glsl, textures.glsl).
+[[nodiscard]] std::vector<SpecConstant> candidate_constants(const TraceContext& context, bool any_hit);
+
 class Tracer {
  public:
   virtual ~Tracer() = default;

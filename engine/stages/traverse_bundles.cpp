@@ -8,18 +8,10 @@ namespace sheaf {
 TraverseBundles::TraverseBundles(const TraceContext& c)
     : context_(c), bundles_(c.device, "rays_hierarchy_bundles"), loose_(c.device, "loose"), single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
-  const bool translucent = c.features.translucent() || c.features.masked;
+  const std::uint32_t lanes = std::min(c.device.limits().subgroup, gpu::BUNDLE);
   auto make = [&](bool any_hit) {
-    const std::uint32_t lanes = std::min(c.device.limits().subgroup, gpu::BUNDLE);
-    const std::array constants{SpecConstant{0, lanes},
-                               SpecConstant{1, any_hit},
-                               SpecConstant{2, c.features.masked},
-                               SpecConstant{3, any_hit && translucent},
-                               SpecConstant{6, c.counted},
-                               SpecConstant{7, c.settings.layers.tests},
-                               SpecConstant{9, c.features.textured},
-                               SpecConstant{10, lanes},
-                               SpecConstant{11, gpu::BUNDLE / lanes}};
+    auto constants = candidate_constants(c, any_hit);
+    constants.insert(constants.end(), {{0, lanes}, {10, lanes}, {11, gpu::BUNDLE / lanes}});
     return Kernel(c.device, "traverse_bundles", constants);
   };
   nearest_ = make(false);

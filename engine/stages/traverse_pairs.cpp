@@ -20,13 +20,7 @@ TraversePairs::TraversePairs(const TraceContext& c)
   if (c.plan.sorts) sort_ = SortRays(c);
   const std::array counting{SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}};
   test_ = Kernel(c.device, "traverse_pairs", counting);
-  const bool translucent = c.features.translucent() || c.features.masked;
-  auto make = [&](bool any_hit) {
-    const std::array constants{
-        SpecConstant{1, any_hit},   SpecConstant{2, c.features.masked},       SpecConstant{3, any_hit && translucent},
-        SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
-    return Kernel(c.device, "intersect_pairs", constants);
-  };
+  auto make = [&](bool any_hit) { return Kernel(c.device, "intersect_pairs", candidate_constants(c, any_hit)); };
   nearest_ = make(false);
   if (c.plan.shadows) any_ = make(true);
 

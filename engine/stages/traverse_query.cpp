@@ -19,13 +19,7 @@ TraverseQuery::TraverseQuery(const TraceContext& c) : context_(c) {
     throw Error(ErrorKind::device,
                 c.device.summary().name + ": --strategy rayquery: the device has no VK_KHR_ray_query");
   boxes_kernel_ = Kernel(c.device, "objects_boxes");
-  const bool translucent = c.features.translucent() || c.features.masked;
-  auto make = [&](bool any_hit) {
-    const std::array constants{
-        SpecConstant{1, any_hit},   SpecConstant{2, c.features.masked},       SpecConstant{3, any_hit && translucent},
-        SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}, SpecConstant{9, c.features.textured}};
-    return Kernel(c.device, "traverse_query", constants);
-  };
+  auto make = [&](bool any_hit) { return Kernel(c.device, "traverse_query", candidate_constants(c, any_hit)); };
   nearest_ = make(false);
   if (c.plan.shadows) any_ = make(true);
   boxes_ = Buffer(c.device, "triangle boxes", std::uint64_t{c.scene.triangles()} * 24, Buffer::Kind::device,

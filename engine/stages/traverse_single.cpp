@@ -6,15 +6,9 @@
 namespace sheaf {
 
 SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
-  const bool translucent = c.features.translucent() || c.features.masked;
   auto make = [&](bool any_hit) {
-    const std::array constants{SpecConstant{1, any_hit},
-                               SpecConstant{2, c.features.masked},
-                               SpecConstant{3, any_hit && translucent},
-                               SpecConstant{6, c.counted},
-                               SpecConstant{7, c.settings.layers.tests},
-                               SpecConstant{8, loose},
-                               SpecConstant{9, c.features.textured}};
+    auto constants = candidate_constants(c, any_hit);
+    constants.push_back({8, loose});
     return Kernel(c.device, "traverse_single", constants);
   };
   nearest = make(false);

@@ -18,6 +18,9 @@ Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t byte
   if (bytes_ > device.limits().storage_range && !by_address)
     throw limit_error(name, std::to_string(bytes_) + " bytes exceed the device's largest storage buffer (" +
                                 std::to_string(device.limits().storage_range) + ")");
+  constexpr std::uint64_t most_by_address = std::uint64_t{1} << 32U;  // offsets in shaders are 32 bits (memory.glsl)
+  if (bytes_ > most_by_address && by_address)
+    throw limit_error(name, std::to_string(bytes_) + " bytes exceed " + std::to_string(most_by_address));
   try {
     buffer_ = vk::raii::Buffer(device.logical(), vk::BufferCreateInfo({}, bytes_, usage));
     const auto needs = buffer_.getMemoryRequirements();
