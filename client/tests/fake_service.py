@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 import re
@@ -157,6 +158,10 @@ class Handler(BaseHTTPRequestHandler):
             self.problem(404, "There is no such route")
 
     def _submit(self, headers: dict[str, str], body: bytes) -> None:
+        digest = base64.b64encode(hashlib.sha256(body).digest()).decode()
+        if headers["content-digest"] != f"sha-256=:{digest}:":
+            self.problem(422, "Not what its digest says", type="urn:sheaf:problem:digest-mismatch")
+            return
         key = headers["idempotency-key"]
         known = self.owner.keys.get(key)
         if known and known[0] != body:

@@ -280,3 +280,27 @@ def test_health(client: sheaf.Client, service: FakeService) -> None:
     with pytest.raises(sheaf.Unavailable, match="disk is low") as caught:
         client.health()
     assert caught.value.extra == {"disk": False}
+
+
+def test_uploads_tell_their_checksum(
+    client: sheaf.Client, service: FakeService, tmp_path: Path, pauses: list[float]
+) -> None:
+    (tmp_path / "a.bin").write_bytes(bytes(range(256)) * 1000)
+    scene = tmp_path / "box.gltf"
+    scene.write_text(json.dumps({"buffers": [{"uri": "a.bin"}]}))
+    client.submit(scene, frames=0)  # the fake service holds the checksum against what came
+    assert not pauses
+    client.job("job1")
+    assert "content-digest" not in service.requests[-1][2]
+
+
+def test_an_upload_that_arrived_damaged_is_sent_again(
+    client: sheaf.Client, service: FakeService, pauses: list[float]
+) -> None:
+    damaged = problem(422, "Not what its digest says", type="urn:sheaf:problem:digest-mismatch")
+    service.fault("POST /v1/jobs$", damaged)
+    assert client.submit(GLTF).id == "job1"
+    assert len(pauses) == 1
+    service.fault("POST /v1/jobs$", damaged, times=4)
+    with pytest.raises(sheaf.DamagedUpload):
+        client.submit(GLTF)

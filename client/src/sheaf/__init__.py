@@ -8,6 +8,7 @@ from ._client import Client
 from ._errors import (
     ApiError,
     Conflict,
+    DamagedUpload,
     FrameError,
     InvalidRequest,
     JobCancelled,
@@ -41,6 +42,7 @@ __all__ = [
     "CameraPath",
     "Client",
     "Conflict",
+    "DamagedUpload",
     "DeviceStats",
     "Event",
     "Frame",

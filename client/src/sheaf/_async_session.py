@@ -13,7 +13,7 @@ import httpx
 
 from ._errors import SheafError
 from ._http import Call, RetryPolicy, api_error, is_answer, translated
-from ._session import build_request, checked_url, own_headers
+from ._session import build_request, checked_url, own_headers, tell_digest
 
 T = TypeVar("T")
 
@@ -81,6 +81,7 @@ class AsyncSession:
         """Sends and reads the answer, with one try."""
         with contextlib.ExitStack() as files:
             request = build_request(self._http, call, files)
+            await asyncio.to_thread(tell_digest, request, call)
             with translated(f"{call.method} {request.url}"):
                 response = await self._http.send(request)
         if not is_answer(call, response):

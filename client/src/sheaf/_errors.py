@@ -12,6 +12,7 @@
     ├── Timeout               the caller's own limit passed while waiting (also a TimeoutError)
     ├── ApiError              the service refused, as problem+json (RFC 9457)
     │   ├── InvalidRequest    400, 422: settings, scene or camera are bad
+    │   ├── DamagedUpload     422 of type digest-mismatch: what arrived is not what was sent
     │   ├── Unauthorized      401, 403: no token, a wrong one, or one without the needed scope
     │   ├── NotFound          404; 410 once it was there and is no more
     │   ├── Conflict          409: not in this state, for example a frame not rendered yet
@@ -99,6 +100,10 @@ class ApiError(SheafError):
 
 class InvalidRequest(ApiError):  # noqa: N818
     """400 or 422: the settings, the scene or the camera path are bad."""
+
+
+class DamagedUpload(ApiError):  # noqa: N818
+    """422 of type digest-mismatch: the upload changed on its way. Worth trying again."""
 
 
 class Unauthorized(ApiError):  # noqa: N818

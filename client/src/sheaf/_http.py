@@ -20,6 +20,7 @@ import httpx
 from ._errors import (
     ApiError,
     Conflict,
+    DamagedUpload,
     InvalidRequest,
     NotFound,
     ProtocolError,
@@ -106,7 +107,7 @@ class RetryPolicy:
 
 def worth_trying_again(error: SheafError) -> bool:
     """Whether the same call may do better later."""
-    return isinstance(error, (TransportError, Unavailable))
+    return isinstance(error, (TransportError, Unavailable, DamagedUpload))
 
 
 def api_error(response: httpx.Response) -> ApiError:
@@ -123,6 +124,8 @@ def api_error(response: httpx.Response) -> ApiError:
     if status in (429, 503):
         pause = retry_after(response.headers.get("retry-after"), datetime.now(timezone.utc))
         return Unavailable(status, title, detail, type=kind, extra=problem, retry_after=pause)
+    if kind.endswith("digest-mismatch"):
+        return DamagedUpload(status, title, detail, type=kind, extra=problem)
     if kind.endswith("limit-exceeded"):
         return TooLarge(status, title, detail, type=kind, extra=problem)
     return _BY_STATUS.get(status, ApiError)(status, title, detail, type=kind, extra=problem)

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
+import hashlib
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
@@ -80,6 +82,7 @@ class Session:
         """Sends and reads the answer, with one try."""
         with contextlib.ExitStack() as files:
             request = build_request(self._http, call, files)
+            tell_digest(request, call)
             with translated(f"{call.method} {request.url}"):
                 response = self._http.send(request)
         if not is_answer(call, response):
@@ -119,6 +122,16 @@ def build_request(
     if call.read_timeout is not None:
         request.extensions["timeout"]["read"] = call.read_timeout
     return request
+
+
+def tell_digest(request: httpx.Request, call: Call[Any]) -> None:
+    """Adds the checksum of an upload, for the service to hold against what arrives (RFC 9530). Reads its files once."""
+    if not call.parts or not isinstance(request.stream, httpx.SyncByteStream):
+        return
+    digest = hashlib.sha256()
+    for block in request.stream:
+        digest.update(block)
+    request.headers["content-digest"] = f"sha-256=:{base64.b64encode(digest.digest()).decode()}:"
 
 
 def _opened(part: Part, files: contextlib.ExitStack) -> tuple[str, tuple[str | None, Any, str]]:
