@@ -26,6 +26,7 @@ std::string default_worker() {
 struct Given {
   std::string listen = "127.0.0.1:8080";
   std::uint64_t upload_mib = Limits{}.upload_bytes >> 20, unpacked_mib = Limits{}.unpacked_bytes >> 20;
+  std::uint64_t textures_mib = Limits{}.texture_bytes >> 20;
   std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256, kept_mib = 0;
   std::uint64_t worker_mib = 16'384, file_mib = 8192, wall_s = 7 * 86'400;
   double grace_s = 5, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30, head_timeout_s = 10;
@@ -42,6 +43,13 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
   limit("--max-zip-ratio", limits.zip_ratio, "unpacked to packed size");
   limit("--max-parts", limits.parts, "parts of a multipart body");
   limit("--max-frames", limits.frames, "frames of a job");
+  limit("--max-inspect", limits.inspect_seconds, "seconds for loading a scene once, before its job is taken");
+  app.add_option("--max-triangles", limits.triangles, "triangles of a scene, instances counted; 0: any")
+      ->capture_default_str()
+      ->group("Limits");
+  app.add_option("--max-textures", given.textures_mib, "MiB of a scene's decoded images; 0: any")
+      ->capture_default_str()
+      ->group("Limits");
   limit("--max-pixels", limits.pixels, "pixels of a frame");
   limit("--max-spp", limits.spp, "samples a pixel");
   limit("--max-depth", limits.depth, "depth of reflection and refraction");
@@ -50,7 +58,9 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
   limit("--max-log", given.log_kib, "KiB kept of a worker's log");
   limit("--max-connections", options.http.max_connections, "open connections");
   limit("--max-streams", options.streams, "clients that wait for events");
-  limit("--http-threads", options.http.threads, "threads that answer requests");
+  limit("--http-threads", options.http.pool.threads, "threads that answer requests");
+  limit("--max-stalled", options.http.pool.most_stalled,
+        "slow clients that may hold a further thread each; then who is slowest makes room");
   limit("--worker-memory", given.worker_mib, "MiB of private memory of a worker");
   limit("--max-cpu", options.service.runner.confinement.cpu_seconds, "seconds of processor time of a worker");
   limit("--max-wall", given.wall_s, "seconds that a worker may run");
@@ -68,11 +78,14 @@ void apply(const Given& given, ProgramOptions& options) {
   Limits& limits = options.service.limits;
   limits.upload_bytes = given.upload_mib << 20;
   limits.unpacked_bytes = given.unpacked_mib << 20;
+  limits.inspect_seconds = std::min(limits.inspect_seconds, given.wall_s);
+  limits.texture_bytes = given.textures_mib << 20;
   limits.log_bytes = given.log_kib << 10;
   options.http.max_body = limits.upload_bytes;
   options.http.timeouts.read = milliseconds(given.read_timeout_s);
   options.http.timeouts.write = milliseconds(given.read_timeout_s);
   options.http.timeouts.head = milliseconds(given.head_timeout_s);
+  options.service.most_inspections = std::max<std::size_t>(1, options.http.pool.threads / 2);
   options.heartbeat = milliseconds(given.heartbeat_s);
   options.service.least_free_bytes = given.free_mib << 20;
   RunnerOptions& runner = options.service.runner;
@@ -120,6 +133,7 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
   app.add_flag("--allow-anonymous", options.anonymous, "listen beyond loopback without a token file");
   app.add_option("--new-token", options.new_token,
                  "NAME=SCOPES: print the token file's line for a new token, and on stderr the token, and end");
+  app.add_option("--report", options.report, "report.json of sheaf-client report, shown on the page");
   app.add_option("--retention", given.retention_h, "hours that a finished job is kept; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

@@ -14,6 +14,7 @@ struct ProgramOptions {
   std::string data;        // empty: a folder of its own, removed at the end
   std::string port_file;   // empty: none
   std::string token_file;  // empty: none
+  std::string report;      // of sheaf-client report, to be shown; empty: none
   std::string new_token;   // to be made and printed instead of serving
   bool anonymous = false;  // beyond loopback without tokens
   std::size_t streams = 2000;

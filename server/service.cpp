@@ -53,7 +53,7 @@ void write_access_log(const ExchangeRecord& exchange) {
 struct Service::Parts {
   explicit Parts(const ProgramOptions& given)
       : options(given),
-        tokens(given.token_file.empty() ? Tokens() : Tokens(given.token_file)),
+        tokens(given.token_file),
         folder(given.data),
         files(folder.path()),
         fresh(!std::filesystem::exists(files.data() / database_name)),
@@ -67,7 +67,8 @@ struct Service::Parts {
                 device,
                 [this] { return http.connections(); },
                 active_measures(given.service.runner.confinement),
-                given.heartbeat},
+                given.heartbeat,
+                given.report},
         http(
             given.http, [this](Request& request) { return handle(router, tokens, request); },
             [this](const ExchangeRecord& exchange) {

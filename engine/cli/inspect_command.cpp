@@ -20,8 +20,9 @@ Json named(const std::string& name, Json more) {
 }
 
 Json describe(const Scene& scene) {
-  std::uint64_t unique = 0, total = 0, instances = 0;
+  std::uint64_t unique = 0, total = 0, instances = 0, texture_bytes = 0;
   for (const auto& mesh : scene.meshes) unique += mesh.triangles.size();
+  for (const auto& image : scene.images) texture_bytes += image.rgba.size();
   auto cameras = Json::array(), lights = Json::array(), animations = Json::array();
   for (const auto index : scene.order) {
     const Node& node = scene.nodes[index];
@@ -51,6 +52,7 @@ Json describe(const Scene& scene) {
           {"meshes", scene.meshes.size()},
           {"materials", scene.materials.size()},
           {"images", scene.images.size()},
+          {"texture_bytes", texture_bytes},
           {"nodes", scene.order.size()},
           {"skins", scene.skins.size()},
           {"cameras", cameras},

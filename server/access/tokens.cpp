@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "http/problem.hpp"
 #include "util/ids.hpp"
+#include "util/log.hpp"
 #include "util/sha256.hpp"
 
 namespace sheaf::server {
@@ -62,18 +63,47 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-Tokens::Tokens(const std::string& path) : required_(true) {
+Tokens::Tokens(const std::string& path) : path_(path) {
+  if (path.empty()) return;
+  version_ = version_of(path);
+  entries_ = std::make_shared<const Entries>(read(path));
+}
+
+Tokens::Version Tokens::version_of(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return {};
+  return {info.st_dev, info.st_ino, static_cast<std::uint64_t>(info.st_size),
+          std::int64_t{info.st_ctim.tv_sec} * 1'000'000'000 + info.st_ctim.tv_nsec};
+}
+
+std::shared_ptr<const Tokens::Entries> Tokens::current() const {
+  const std::lock_guard lock(mutex_);
+  const Version now = version_of(path_);  // before it is read: what changes meanwhile is seen the next time
+  if (now == version_) return entries_;
+  version_ = now;
+  try {
+    entries_ = std::make_shared<const Entries>(read(path_));
+    write_log(LogLevel::info, "token file read again", {{"file", path_}, {"tokens", entries_->size()}});
+  } catch (const Error& error) {
+    write_log(LogLevel::error, "token file is bad: the tokens of before hold", {{"reason", error.what()}});
+  }
+  return entries_;
+}
+
+Tokens::Entries Tokens::read(const std::string& path) {
+  Entries entries;
   std::ifstream file(path);
   if (!file) throw io_error(path, "cannot be read");
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && (info.st_mode & S_IWOTH) != 0)
     throw input_error(path, "everybody may write it: chmod o-w");
   std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) read_line(path, number, line);
-  if (entries_.empty()) throw input_error(path, "holds no token");
+  for (std::size_t number = 1; std::getline(file, line); ++number) read_line(path, number, line, entries);
+  if (entries.empty()) throw input_error(path, "holds no token");
+  return entries;
 }
 
-void Tokens::read_line(const std::string& path, std::size_t number, const std::string& line) {
+void Tokens::read_line(const std::string& path, std::size_t number, const std::string& line, Entries& entries) {
   std::istringstream words(line.substr(0, line.find('#')));
   std::string name, scopes, hash, more;
   if (!(words >> name)) return;
@@ -86,11 +116,11 @@ void Tokens::read_line(const std::string& path, std::size_t number, const std::s
   if (!known) refuse("'" + scopes + "' is neither read nor submit nor both with a comma");
   if (!hash.starts_with(hash_mark) || !is_hash(hash.substr(hash_mark.size())) || words >> more)
     refuse("the third and last word must be sha256: and 64 hexadecimal digits in lower case");
-  entries_.push_back({name, hash.substr(hash_mark.size()), *known});
+  entries.push_back({name, hash.substr(hash_mark.size()), *known});
 }
 
 std::string Tokens::authorize(const Request& request, Scope scope) const {
-  if (!required_) return {};
+  if (!required()) return {};
   const std::string header = request.header("Authorization").value_or("");
   if (header.empty()) unauthorized("a bearer token is needed", "");
   const auto space = header.find(' ');
@@ -98,8 +128,9 @@ std::string Tokens::authorize(const Request& request, Scope scope) const {
   if (!equal_ignoring_case(header.substr(0, space), "Bearer") || token.empty() || token.size() > max_token)
     unauthorized("Authorization must be Bearer and a token", ", error=\"invalid_request\"");
   const std::string hash = sha256_of(token);
+  const auto entries = current();
   const Entry* found = nullptr;
-  for (const Entry& entry : entries_)  // every one of them, whichever it is
+  for (const Entry& entry : *entries)  // every one of them, whichever it is
     if (equal_in_constant_time(entry.hash, hash)) found = &entry;
   if (!found) unauthorized("the token is not known", ", error=\"invalid_token\"");
   if ((found->scopes & static_cast<unsigned>(scope)) == 0) {

@@ -3,6 +3,9 @@
 // so that a plain hash of one tells nobody the token.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -14,14 +17,15 @@ enum class Scope : unsigned { read = 1, submit = 2 };
 
 class Tokens {
  public:
-  /// Without a file everybody may do everything.
+  /// Without a file (an empty path) everybody may do everything.
   Tokens() = default;
 
   /// Lines "NAME SCOPES sha256:HEX", SCOPES being read, submit or both with a comma; '#' starts a comment. Throws
-  /// Error{io, input} naming the line.
+  /// Error{io, input} naming the line. The file is read again once it has changed: who was taken out of it is refused
+  /// from the next request on. While it cannot be read or has a bad line, the last good one holds, and the log says so.
   explicit Tokens(const std::string& path);
 
-  [[nodiscard]] bool required() const { return required_; }
+  [[nodiscard]] bool required() const { return !path_.empty(); }
 
   /// The name of the request's token; empty where none is required. Throws Problem: 401, or 403 without the scope.
   [[nodiscard]] std::string authorize(const Request& request, Scope scope) const;
@@ -31,10 +35,24 @@ class Tokens {
     std::string name, hash;
     unsigned scopes = 0;
   };
-  void read_line(const std::string& path, std::size_t number, const std::string& line);
+  using Entries = std::vector<Entry>;
 
-  bool required_ = false;
-  std::vector<Entry> entries_;
+  /// What tells one state of a file from another; equal for two that cannot be seen.
+  struct Version {
+    std::uint64_t device = 0, inode = 0, size = 0;
+    std::int64_t changed_ns = -1;  // ctime: set by every way to change a file or to put another in its place
+    bool operator==(const Version&) const = default;
+  };
+
+  [[nodiscard]] static Version version_of(const std::string& path);
+  [[nodiscard]] static Entries read(const std::string& path);
+  static void read_line(const std::string& path, std::size_t number, const std::string& line, Entries& entries);
+  [[nodiscard]] std::shared_ptr<const Entries> current() const;
+
+  std::string path_;
+  mutable std::mutex mutex_;
+  mutable Version version_;
+  mutable std::shared_ptr<const Entries> entries_;
 };
 
 struct NewToken {

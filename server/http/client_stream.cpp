@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// False at the deadline.
-bool wait_for(int fd, short events, Clock::time_point deadline) {
+bool wait_until_ready(int fd, short events, Clock::time_point deadline) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) return false;
@@ -29,13 +29,22 @@ bool wait_for(int fd, short events, Clock::time_point deadline) {
 
 }  // namespace
 
+bool ClientStream::wait_for(short events, Clock::time_point deadline) const {
+  pollfd entry{socket_.get(), events, 0};
+  if (!observer_ || ::poll(&entry, 1, 0) != 0) return wait_until_ready(socket_.get(), events, deadline);
+  observer_->stalls(socket_.get());
+  const bool ready = wait_until_ready(socket_.get(), events, deadline);
+  observer_->goes_on(socket_.get());
+  return ready;
+}
+
 std::size_t ClientStream::receive(char* into, std::size_t size, Clock::time_point deadline) {
   while (true) {
     const ssize_t n = ::recv(socket_.get(), into, size, MSG_DONTWAIT);
     if (n >= 0) return static_cast<std::size_t>(n);
     if (errno == EINTR) continue;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return 0;  // reset: as good as ended
-    if (!wait_for(socket_.get(), POLLIN, deadline))
+    if (!wait_for(POLLIN, deadline))
       throw Problem(ProblemKind::request_timeout, "no further bytes of the request came in time");
   }
 }
@@ -103,9 +112,7 @@ ssize_t ClientStream::read(char* into, size_t size) {
   return static_cast<ssize_t>(n);
 }
 
-bool ClientStream::is_writable() const {
-  return !failed_ && wait_for(socket_.get(), POLLOUT, Clock::now() + timeouts_.write);
-}
+bool ClientStream::is_writable() const { return !failed_ && wait_for(POLLOUT, Clock::now() + timeouts_.write); }
 
 ssize_t ClientStream::write(const char* bytes, size_t size) {
   while (!failed_) {
@@ -122,7 +129,7 @@ void ClientStream::close_gently() {
   const auto deadline = Clock::now() + std::chrono::seconds(1);
   char block[16384];
   std::uint64_t discarded = 0;
-  while (discarded < (std::uint64_t{8} << 20) && wait_for(socket_.get(), POLLIN, deadline)) {
+  while (discarded < (std::uint64_t{8} << 20) && wait_for(POLLIN, deadline)) {
     const ssize_t n = ::recv(socket_.get(), block, sizeof block, MSG_DONTWAIT);
     if (n <= 0) return;
     discarded += static_cast<std::uint64_t>(n);

@@ -24,10 +24,21 @@ struct StreamTimeouts {
   std::chrono::milliseconds write{30'000};  // until the client takes the next bytes of a reply
 };
 
+/// Is told when a client keeps its thread waiting, and when no more.
+class StallObserver {
+ public:
+  virtual ~StallObserver() = default;
+  virtual void stalls(int fd) = 0;
+  virtual void goes_on(int fd) = 0;
+};
+
 class ClientStream : public httplib::Stream {
  public:
   ClientStream(Fd socket, StreamTimeouts timeouts, HeadLimits limits)
       : socket_(std::move(socket)), timeouts_(timeouts), limits_(limits) {}
+
+  /// `observer` outlives the stream, or is taken away again.
+  void tell_stalls(StallObserver* observer) { observer_ = observer; }
 
   /// Next request's head; nothing if the client has closed. Throws Problem.
   [[nodiscard]] std::optional<RequestHead> read_head();
@@ -57,10 +68,12 @@ class ClientStream : public httplib::Stream {
 
  private:
   using Clock = std::chrono::steady_clock;
+  [[nodiscard]] bool wait_for(short events, Clock::time_point deadline) const;
   [[nodiscard]] std::size_t receive(char* into, std::size_t size, Clock::time_point deadline);
   [[nodiscard]] std::size_t take(char* into, std::size_t size);
 
   Fd socket_;
+  StallObserver* observer_ = nullptr;
   StreamTimeouts timeouts_;
   HeadLimits limits_;
   std::string buffer_;  // received, not yet used: a pipelined request's bytes stay here

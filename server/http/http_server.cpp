@@ -49,6 +49,7 @@ HttpServer::HttpServer(HttpOptions options, Handler handler, Observer observer)
       observer_(std::move(observer)),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      pool_(options.pool, [this](ConnectionPtr connection) { serve(std::move(connection)); }),
       pump_(options.timeouts.write, [this](ConnectionPtr connection, const ExchangeRecord& record, bool keep) {
         if (observer_) observer_(record);
         if (keep && !stopping_) return park(std::move(connection));
@@ -89,7 +90,7 @@ std::string HttpServer::bind(const std::string& host, const std::string& port) {
 }
 
 void HttpServer::run() {
-  for (std::size_t i = 0; i < options_.threads; ++i) workers_.emplace_back([this] { work(); });
+  pool_.start();
   std::array<epoll_event, 64> events{};
   while (!stopping_) {
     const int n = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), 1000);
@@ -101,20 +102,16 @@ void HttpServer::run() {
         wake_connection(fd);
     }
     close_idle(Clock::now() - options_.keep_alive);
+    pool_.tick();
   }
   listener_.reset();
   close_idle(Clock::time_point::max());
-  shutdown_sockets(SHUT_RD);
-  {
-    std::unique_lock lock(mutex_);
-    drained_.wait_for(lock, options_.drain, [this] { return busy_.empty() && waiting_.empty(); });
-    closed_ = true;
-  }
+  pool_.shut_down_sockets(SHUT_RD);
+  pool_.drain(Clock::now() + options_.drain);
   pump_.stop(Clock::now() + options_.drain);
   svr_sock_ = INVALID_SOCKET;
-  shutdown_sockets(SHUT_RDWR);
-  ready_.notify_all();
-  for (std::thread& worker : workers_) worker.join();
+  pool_.shut_down_sockets(SHUT_RDWR);
+  pool_.join();
 }
 
 void HttpServer::stop() {
@@ -147,50 +144,28 @@ void HttpServer::accept_clients() {
 void HttpServer::park(ConnectionPtr connection) {
   const int fd = connection->stream.fd();
   connection->idle_since = Clock::now();
+  pool_.release(fd);
+  if (stopping_) return discard(std::move(connection));
   const std::lock_guard lock(mutex_);
-  busy_.erase(fd);
-  if (stopping_) {
-    --open_;
-    drained_.notify_all();
-    return;
-  }
   idle_[fd] = std::move(connection);
   watch(epoll_.get(), fd, EPOLLIN | EPOLLRDHUP | EPOLLONESHOT);
 }
 
 void HttpServer::wake_connection(int fd) {
-  const std::lock_guard lock(mutex_);
-  const auto found = idle_.find(fd);
-  if (found == idle_.end()) return;
-  waiting_.push_back(std::move(found->second));
-  idle_.erase(found);
-  ready_.notify_one();
+  ConnectionPtr connection;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = idle_.find(fd);
+    if (found == idle_.end()) return;
+    connection = std::move(found->second);
+    idle_.erase(found);
+  }
+  pool_.add(std::move(connection));
 }
 
 void HttpServer::close_idle(Clock::time_point before) {
   const std::lock_guard lock(mutex_);
   open_ -= std::erase_if(idle_, [before](const auto& entry) { return entry.second->idle_since <= before; });
-}
-
-void HttpServer::shutdown_sockets(int how) {
-  const std::lock_guard lock(mutex_);
-  for (const auto& [fd, connection] : busy_) ::shutdown(fd, how);
-  for (const auto& connection : waiting_) ::shutdown(connection->stream.fd(), how);
-}
-
-void HttpServer::work() {
-  while (true) {
-    ConnectionPtr connection;
-    {
-      std::unique_lock lock(mutex_);
-      ready_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
-      if (waiting_.empty()) return;
-      connection = std::move(waiting_.front());
-      waiting_.pop_front();
-      busy_[connection->stream.fd()] = connection.get();
-    }
-    serve(std::move(connection));
-  }
 }
 
 void HttpServer::serve(ConnectionPtr connection) {
@@ -209,11 +184,9 @@ void HttpServer::serve(ConnectionPtr connection) {
 }
 
 void HttpServer::discard(ConnectionPtr connection) {
-  const std::lock_guard lock(mutex_);
-  busy_.erase(connection->stream.fd());
+  pool_.release(connection->stream.fd());
   connection.reset();
   --open_;
-  drained_.notify_all();
 }
 
 /// True if another request may follow on the connection; it is null if it was handed over.
@@ -251,11 +224,7 @@ void HttpServer::hand_over(ConnectionPtr connection, const RequestHead& head, Re
                            Clock::time_point started) {
   const bool chunked = !head.http_1_0;
   const bool keep = head.keep_alive && connection->stream.body_finished() && !connection->stream.has_buffered();
-  {
-    const std::lock_guard lock(mutex_);
-    busy_.erase(connection->stream.fd());
-    drained_.notify_all();
-  }
+  pool_.release(connection->stream.fd());
   std::string text = lasting_head(reply, chunked, keep);
   pump_.add({std::move(connection), std::move(text), *std::move(reply.lasting), chunked, keep, record, started});
 }

@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: MIT
 // Connections to threads. Idle keep-alive connections wait in epoll and cost no thread; a connection takes a thread
-// from the pool while it sends a request and is sent the reply. A reply that lasts (an event stream) takes the
-// connection on to the stream pump. cpp-httplib runs the exchange and writes every other reply.
+// from the pool (worker_pool.hpp) while it sends a request and is sent the reply. A reply that lasts (an event stream)
+// takes the connection on to the stream pump. cpp-httplib runs the exchange and writes every other reply.
 #pragma once
 
 #include <httplib.h>
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "http/connection.hpp"
 #include "http/message.hpp"
 #include "http/stream_pump.hpp"
+#include "http/worker_pool.hpp"
 
 namespace sheaf::server {
 
 struct HttpOptions {
-  std::size_t threads = 32;
+  PoolOptions pool;
   std::size_t max_connections = 4000;
   std::uint64_t max_body = std::uint64_t{1} << 30;
   std::chrono::seconds keep_alive{75};  // how long an idle connection may wait for its next request
@@ -53,7 +51,6 @@ class HttpServer : private httplib::Server {
   void wake_connection(int fd);
   void close_idle(std::chrono::steady_clock::time_point before);
   void park(ConnectionPtr connection);
-  void work();
   void serve(ConnectionPtr connection);
   void discard(ConnectionPtr connection);
   bool serve_one(ConnectionPtr& connection);
@@ -61,7 +58,6 @@ class HttpServer : private httplib::Server {
                  std::chrono::steady_clock::time_point started);
   Reply answer(const RequestHead& head, ClientStream& stream, ExchangeRecord& record);
   bool refuse_head(ClientStream& stream, const class Problem& problem);
-  void shutdown_sockets(int how);
 
   HttpOptions options_;
   Handler handler_;
@@ -71,12 +67,8 @@ class HttpServer : private httplib::Server {
   std::atomic<std::size_t> open_{0};
 
   std::mutex mutex_;
-  std::condition_variable ready_, drained_;
   std::map<int, ConnectionPtr> idle_;
-  std::deque<ConnectionPtr> waiting_;
-  std::map<int, Connection*> busy_;
-  bool closed_ = false;  // workers end when nothing waits
-  std::vector<std::thread> workers_;
+  WorkerPool pool_;
   StreamPump pump_;
 };
 

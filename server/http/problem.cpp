@@ -49,6 +49,8 @@ Row row_of(ProblemKind kind) {
       return {415, "unsupported-media-type", "The media type is not supported"};
     case ProblemKind::range_not_satisfiable:
       return {416, "range-not-satisfiable", "The range is beyond the end"};
+    case ProblemKind::digest_mismatch:
+      return {422, "digest-mismatch", "The upload is not what its digest says"};
     case ProblemKind::bad_settings:
       return {422, "bad-settings", "The settings are not valid"};
     case ProblemKind::bad_scene:
@@ -63,6 +65,8 @@ Row row_of(ProblemKind kind) {
       return {500, "internal", "The service failed"};
     case ProblemKind::not_implemented:
       return {501, "not-implemented", "The method is not known"};
+    case ProblemKind::busy:
+      return {503, "busy", "Too much is being done at once"};
     case ProblemKind::queue_full:
       return {503, "queue-full", "The queue is full"};
     case ProblemKind::too_many_streams:

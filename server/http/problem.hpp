@@ -2,6 +2,7 @@
 // Every refusal the service gives: RFC 9457 problem details. Thrown anywhere below a route, written in one place.
 #pragma once
 
+#include <cstdint>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -33,6 +34,7 @@ enum class ProblemKind {
   uri_too_long,
   unsupported_media_type,
   range_not_satisfiable,
+  digest_mismatch,
   bad_settings,
   bad_scene,
   idempotency_mismatch,
@@ -40,6 +42,7 @@ enum class ProblemKind {
   headers_too_large,
   internal,
   not_implemented,
+  busy,
   queue_full,
   too_many_streams,
   storage,
@@ -59,6 +62,11 @@ class Problem : public std::exception {
   Problem& member(const std::string& name, nlohmann::json value) {
     members_[name] = std::move(value);
     return *this;
+  }
+
+  /// The limit that was passed: its option without the dashes, what it allows, and what came, or would have at least.
+  Problem& passed(const char* name, std::uint64_t limit, std::uint64_t value) {
+    return member("limit_name", name).member("limit", limit).member("value", value);
   }
 
   [[nodiscard]] int status() const;

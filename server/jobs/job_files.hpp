@@ -25,6 +25,8 @@ class JobFiles {
   [[nodiscard]] std::filesystem::path stats(const std::string& id) const { return folder(id) / "stats.json"; }
   [[nodiscard]] std::filesystem::path log(const std::string& id) const { return folder(id) / "log.txt"; }
 
+  [[nodiscard]] std::filesystem::path incoming(const std::string& id) const { return data_ / "incoming" / id; }
+
   /// A new empty folder for an upload, with a scene folder in it.
   [[nodiscard]] std::filesystem::path receive(const std::string& id) const;
 

@@ -13,11 +13,17 @@ namespace sheaf::server {
 namespace {
 
 constexpr auto janitor_interval = std::chrono::seconds(1);
+constexpr std::size_t inspections_at_once = 4;  // each may take a worker's memory
 
 }  // namespace
 
 JobService::JobService(ServiceOptions options, JobStore& store, const JobFiles& files)
-    : options_(std::move(options)), store_(store), files_(files), runner_(options_.runner, store, files, counters_) {
+    : options_(std::move(options)),
+      store_(store),
+      files_(files),
+      runner_(options_.runner, store, files, counters_),
+      inspector_(options_.runner.sheaf, options_.runner.confinement, options_.limits, inspections_at_once,
+                 options_.most_inspections) {
   queue_ =
       std::make_unique<JobQueue>(runner_, options_.jobs_at_once, [this](const std::string& id) { worker_gone(id); });
   janitor_ = std::thread([this] {
@@ -38,6 +44,7 @@ void JobService::shut_down() {
     stopping_ = true;
   }
   stopped_.notify_all();
+  inspector_.interrupt();
   store_.interrupt_waits();
   queue_->shut_down();
   if (janitor_.joinable()) janitor_.join();
@@ -50,8 +57,7 @@ void JobService::check_capacity() const {
     throw Problem(ProblemKind::queue_full, std::to_string(waiting) + " jobs are waiting, the limit is " +
                                                std::to_string(options_.limits.queued_jobs))
         .header("Retry-After", "10")
-        .member("limit", options_.limits.queued_jobs)
-        .member("value", waiting);
+        .passed("max-queue", options_.limits.queued_jobs, waiting);
   if (const auto trouble = store_.trouble()) throw Problem(ProblemKind::storage, *trouble).header("Retry-After", "30");
   const std::uint64_t free = files_.free_bytes();
   if (free < options_.least_free_bytes)
@@ -59,8 +65,7 @@ void JobService::check_capacity() const {
                                             " MiB left, jobs are taken from " +
                                             std::to_string(options_.least_free_bytes >> 20) + " MiB on")
         .header("Retry-After", "60")
-        .member("limit", options_.least_free_bytes)
-        .member("value", free);
+        .passed("min-free", options_.least_free_bytes, free);
 }
 
 JobService::Fitness JobService::fitness() {
@@ -108,6 +113,16 @@ bool JobService::take_up(const std::string& id) {
     if (stored.state == JobState::running) requeue_job(stored, events);
   });
   return wanted;
+}
+
+void JobService::inspect(const Job& job) {
+  try {
+    const std::filesystem::path folder = files_.incoming(job.id);
+    inspector_.check(folder, folder / "scene" / job.scene_file, job.arguments);
+  } catch (...) {
+    files_.remove(job.id);
+    throw;
+  }
 }
 
 Submitted JobService::submit(Job job, const Idempotency& idempotency, const std::string& request) {

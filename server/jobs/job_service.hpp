@@ -14,6 +14,7 @@
 #include "jobs/job_runner.hpp"
 #include "jobs/job_store.hpp"
 #include "jobs/limits.hpp"
+#include "jobs/scene_inspector.hpp"
 
 namespace sheaf::server {
 
@@ -22,6 +23,7 @@ struct ServiceOptions {
   std::uint64_t kept_bytes = 0;  // of all jobs: beyond it, ended ones go, the earliest first; 0: no limit
   Limits limits;
   std::size_t jobs_at_once = 1;
+  std::size_t most_inspections = 16;  // scenes that are looked into or wait for that, each on a thread for requests
   std::uint64_t least_free_bytes = std::uint64_t{256} << 20;  // no new job is taken with less disk than this
 };
 
@@ -45,6 +47,10 @@ class JobService {
   /// Takes up the jobs of an earlier run. To be called once, before the first request. `fresh`: the store is new, so
   /// that folders it does not know need not be rubbish.
   void recover(bool fresh);
+
+  /// Looks into an upload that was received under `job.id`. Throws Problem (422) if the scene passes a limit; then the
+  /// upload is gone.
+  void inspect(const Job& job);
 
   /// Takes an upload that was received under `job.id`. On `repeated` and `conflict` the upload is thrown away.
   Submitted submit(Job job, const Idempotency& idempotency, const std::string& request);
@@ -84,6 +90,7 @@ class JobService {
   const JobFiles& files_;
   Counters counters_;
   JobRunner runner_;
+  SceneInspector inspector_;
   std::atomic<bool> stopping_{false}, queue_was_full_{false}, disk_was_low_{false};
   std::mutex mutex_;
   std::condition_variable stopped_;

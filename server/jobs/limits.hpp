@@ -19,6 +19,9 @@ struct Limits {
   std::uint64_t spp = 4096;
   std::uint64_t depth = 64;
   std::uint64_t memory_mib = 65'536;
+  std::uint64_t triangles = 64'000'000;                  // of the whole scene, instances counted; 0: any
+  std::uint64_t texture_bytes = std::uint64_t{4} << 30;  // of its images, decoded; 0: any
+  std::uint64_t inspect_seconds = 60;                    // for loading a scene once, to know these two
   std::uint64_t queued_jobs = 1000;
   std::uint64_t log_bytes = std::uint64_t{4} << 20;  // kept of a worker's log
 };

@@ -13,6 +13,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // clang before 17 does not find it by itself
 
 StoredFilePtr shared(std::optional<StoredFile> file) {
   return file ? std::make_shared<const StoredFile>(*std::move(file)) : nullptr;

@@ -23,13 +23,12 @@ struct Context {
   [[noreturn]] void refuse(const std::string& reason) const {
     throw Problem(ProblemKind::bad_settings, "settings." + key + ": " + reason).member("pointer", "/" + key);
   }
-  void bound(std::uint64_t value, std::uint64_t limit, const std::string& what) const {
+  void bound(std::uint64_t value, const char* name, std::uint64_t limit, const std::string& what) const {
     if (value > limit)
       throw Problem(ProblemKind::limit_exceeded, "settings." + key + ": " + std::to_string(value) + " " + what +
                                                      ", the limit is " + std::to_string(limit))
           .member("pointer", "/" + key)
-          .member("limit", limit)
-          .member("value", value);
+          .passed(name, limit, value);
   }
 };
 
@@ -66,6 +65,8 @@ std::string choice(const json& value, Context& context) {
   context.refuse("must be one of " + list);
 }
 
+constexpr char max_spp[] = "max-spp", max_depth[] = "max-depth", max_memory[] = "max-memory";  // limits, by option
+
 constexpr std::array strategies{"auto",     "hybrid", "crsh",  "rsh",      "frustum",
                                 "classify", "bvh",    "brute", "rayquery", "reference"};
 constexpr std::array switches{"auto", "on", "off"};
@@ -91,7 +92,7 @@ std::string frames(const json& value, Context& context) {
   } catch (const Error& error) {
     context.refuse(error.what());
   }
-  context.bound(context.settings.frames->size(), context.limits.frames, "frames");
+  context.bound(context.settings.frames->size(), "max-frames", context.limits.frames, "frames");
   std::ranges::sort(*context.settings.frames);
   return list;
 }
@@ -111,8 +112,8 @@ std::string size(const json& value, Context& context) {
         second.ec != std::errc{} || sides[0] == 0 || sides[1] == 0)
       context.refuse("must be \"WIDTHxHEIGHT\" in pixels");
   }
-  context.bound(std::max(sides[0], sides[1]), 65'535, "pixels along a side");
-  context.bound(sides[0] * sides[1], context.limits.pixels, "pixels");
+  context.bound(std::max(sides[0], sides[1]), "side", 65'535, "pixels along a side");
+  context.bound(sides[0] * sides[1], "max-pixels", context.limits.pixels, "pixels");
   return std::to_string(sides[0]) + "x" + std::to_string(sides[1]);
 }
 
@@ -133,10 +134,10 @@ std::string fps(const json& value, Context& context) {
   return json(static_cast<double>(over) / static_cast<double>(under)).dump();
 }
 
-template <std::uint64_t Limits::*limit, std::uint64_t least = 1>
+template <std::uint64_t Limits::*limit, const auto& name, std::uint64_t least = 1>
 std::string bounded(const json& value, Context& context) {
   const std::uint64_t number = whole(value, context, least);
-  context.bound(number, context.limits.*limit, "asked for");
+  context.bound(number, name, context.limits.*limit, "asked for");
   return std::to_string(number);
 }
 
@@ -198,8 +199,8 @@ constexpr std::array table{Setting{"frames", frames},
                            Setting{"animation", name_or_index},
                            Setting{"camera-node", name_or_index},
                            Setting{"size", size},
-                           Setting{"spp", bounded<&Limits::spp>},
-                           Setting{"depth", bounded<&Limits::depth, 0>},
+                           Setting{"spp", bounded<&Limits::spp, max_spp>},
+                           Setting{"depth", bounded<&Limits::depth, max_depth, 0>},
                            Setting{"cutoff", cutoff},
                            Setting{"strategy", choice<strategies>},
                            Setting{"sort", choice<switches>},
@@ -210,7 +211,7 @@ constexpr std::array table{Setting{"frames", frames},
                            Setting{"scene-name", name_or_index},
                            Setting{"environment", environment},
                            Setting{"count", choice<switches>},
-                           Setting{"memory", bounded<&Limits::memory_mib>},
+                           Setting{"memory", bounded<&Limits::memory_mib, max_memory>},
                            Setting{"device", name_or_index},
                            Setting{"opaque", flag},
                            Setting{"preview", flag}};
@@ -220,7 +221,7 @@ constexpr std::array reserved{"out", "camera", "stats", "dump", "progress", "res
 
 void refuse_unknown(const json& given) {
   for (const auto& [key, value] : given.items()) {
-    if (std::ranges::any_of(table, [&](const Setting& setting) { return key == setting.name; })) continue;
+    if (std::ranges::any_of(table, [&name = key](const Setting& setting) { return name == setting.name; })) continue;
     const bool known = std::ranges::find(reserved, key) != reserved.end();
     throw Problem(ProblemKind::bad_settings,
                   "settings." + key + (known ? ": not accepted over HTTP" : ": there is no such setting"))

@@ -178,12 +178,13 @@ $("more").addEventListener("click", async () => {
   page.next = answer.next;
   drawJobs();
 });
-document.addEventListener("token", () => { refreshJobs(); if (page.selected) select(page.selected); });
+document.addEventListener("token", () => { refreshJobs(); findReport(); if (page.selected) select(page.selected); });
 addEventListener("hashchange", () => { const id = /^#job=([a-z2-7]+)$/.exec(location.hash)?.[1]; if (id && id !== page.selected) select(id); });
 
 (async () => {
   refreshHealth();
   await refreshJobs();
+  findReport();
   const wanted = /^#job=([a-z2-7]+)$/.exec(location.hash)?.[1] ?? page.jobs[0]?.id;
   if (wanted) select(wanted);
   for (;;) {

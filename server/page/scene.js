@@ -9,9 +9,13 @@ const QUALITIES = {
 
 let chosen = { scene: null, camera: null, beside: [] };
 
-/** Sorts files into the scene, a camera path, and what lies beside the scene. */
-function choose(files) {
-  const list = [...files];
+/** Sorts files into the scene, a camera path, and what lies beside the scene; a report is shown. */
+async function choose(files) {
+  const given = [...files];
+  const reports = await Promise.all(given.map(readReport));
+  reports.filter(Boolean).forEach(showReport);
+  const list = given.filter((_, i) => !reports[i]);
+  if (given.length && !list.length) return $("report").scrollIntoView();
   const ending = (file) => file.name.toLowerCase().split(".").pop();
   const scene = list.find((file) => ["glb", "gltf", "zip"].includes(ending(file)));
   const camera = list.find((file) => ending(file) === "json");
@@ -23,6 +27,13 @@ function choose(files) {
   $("drop-text").textContent = chosen.scene ? [chosen.scene, chosen.camera, ...chosen.beside].filter(Boolean).map((file) => file.name).join(", ")
     : "Drop a scene here, or choose: .glb, .zip, or .gltf with the files beside it.";
   describe();
+}
+
+/** A file's report; null where it is something else. */
+async function readReport(file) {
+  if (!file.name.toLowerCase().endsWith(".json")) return null;
+  const found = await file.text().then(JSON.parse).catch(() => null);
+  return isReport(found) ? found : null;
 }
 
 function showError(id, text) { $(id).textContent = text; $(id).hidden = !text; }

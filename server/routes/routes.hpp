@@ -22,6 +22,7 @@ struct RouteContext {
   std::function<std::size_t()> connections;     // open now
   std::vector<std::string> confinement;         // measures that hold for workers
   std::chrono::milliseconds heartbeat{15'000};  // between comments on an idle event stream
+  std::string report;                           // a file for the page; empty: none
 };
 
 /// `context` outlives the router.

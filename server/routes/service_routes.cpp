@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "http/problem.hpp"
+#include "routes/limit_table.hpp"
 #include "routes/resources.hpp"
 #include "routes/routes.hpp"
 
 namespace sheaf::server {
 namespace {
+
+constexpr std::uint64_t most_report = std::uint64_t{64} << 20;
 
 Reply health(RouteContext&, Request&) { return json_reply(200, {{"status", "alive"}, {"version", SHEAF_VERSION}}); }
 
@@ -27,7 +30,17 @@ Reply metrics(RouteContext& context, Request&) {
                                                            context.device.result().ready, context.confinement}));
 }
 
-Reply contract(RouteContext&, Request&) { return text_reply("application/json", openapi_json); }
+/// The contract with the limits of this very service in it.
+std::string contract_of(const ServiceOptions& options) {
+  auto contract = nlohmann::ordered_json::parse(openapi_json);
+  contract["x-limits"] = limit_table(options);
+  return contract.dump(2);
+}
+
+Reply report(RouteContext& context, Request&) {
+  if (context.report.empty()) throw Problem(ProblemKind::not_produced, "the service was given no report");
+  return text_reply("application/json", read_text(context.report, most_report));
+}
 
 Reply page(RouteContext&, Request&) {
   Reply reply = text_reply("text/html; charset=utf-8", index_html);
@@ -48,7 +61,11 @@ void add_service_routes(Router& router, RouteContext& context) {
   get("/healthz", health);
   get("/readyz", readiness);
   get("/metrics", metrics);
-  get("/openapi.json", contract);
+  router.add("GET", "/openapi.json", [text = contract_of(context.service.options())](Request& request) {
+    request.allow_arguments({});
+    return text_reply("application/json", text);
+  });
+  get("/v1/report", report);
   get("/", page);
 }
 

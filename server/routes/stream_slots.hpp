@@ -20,7 +20,7 @@ class StreamSlots {
       --used_;
       throw Problem(ProblemKind::too_many_streams, std::to_string(limit_) + " clients are waiting for events")
           .header("Retry-After", "5")
-          .member("limit", limit_);
+          .passed("max-streams", limit_, limit_ + 1);
     }
     return {this, [this](void*) { --used_; }};
   }

@@ -2,10 +2,13 @@
 #include "upload/submission.hpp"
 
 #include <array>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "http/problem.hpp"
 #include "jobs/settings.hpp"
+#include "upload/content_digest.hpp"
 #include "upload/multipart.hpp"
 #include "upload/new_file.hpp"
 #include "upload/safe_path.hpp"
@@ -67,7 +70,7 @@ class Receiver {
     if (file_) return file_->write(bytes);
     if (text_.size() + bytes.size() > text_limit_)
       throw Problem(ProblemKind::too_large, part_.name + ": has more than " + std::to_string(text_limit_) + " bytes")
-          .member("limit", text_limit_);
+          .passed(part_.name == "camera" ? "camera" : "settings", text_limit_, text_.size() + bytes.size());
     text_.append(bytes);
   }
 
@@ -153,6 +156,32 @@ class Receiver {
   bool has_files_ = false;
 };
 
+void read_all(Request& request, const std::function<void(std::string_view)>& take) {
+  std::vector<char> block(std::size_t{1} << 16);
+  for (std::size_t n = 0; (n = request.read_body(block.data(), block.size())) > 0;) take({block.data(), n});
+}
+
+/// Of a body that arrived damaged nothing else is said: what is malformed waits until all of it has been read.
+void read_checked(Request& request, const std::string& told, MultipartParser& parser) {
+  Sha256 hash;
+  std::optional<Problem> malformed;
+  read_all(request, [&](std::string_view bytes) {
+    hash.update(bytes);
+    if (malformed) return;
+    try {
+      parser.feed(bytes);
+    } catch (const Problem& problem) {
+      if (problem.kind() != ProblemKind::malformed_multipart) throw;
+      malformed = problem;
+    }
+  });
+  const std::string found = hash.finish();
+  if (found != told)
+    throw Problem(ProblemKind::digest_mismatch,
+                  "the body's SHA-256 is " + found + ", Content-Digest says " + told + ": it is not what was sent");
+  if (malformed) throw Problem(*malformed);
+}
+
 }  // namespace
 
 Submission receive_submission(const std::string& id, Request& request, const JobFiles& files, const Limits& limits) {
@@ -163,8 +192,11 @@ Submission receive_submission(const std::string& id, Request& request, const Job
     MultipartParser parser(*boundary, limits.parts,
                            {[&](const PartHeader& part) { receiver.begin(part); },
                             [&](std::string_view bytes) { receiver.data(bytes); }, [&] { receiver.end(); }});
-    std::vector<char> block(std::size_t{1} << 16);
-    for (std::size_t n = 0; (n = request.read_body(block.data(), block.size())) > 0;) parser.feed({block.data(), n});
+    const std::optional<std::string> told = told_sha256(request);
+    if (told)
+      read_checked(request, *told, parser);
+    else
+      read_all(request, [&](std::string_view bytes) { parser.feed(bytes); });
     parser.finish();
     return receiver.finish(id);
   } catch (...) {

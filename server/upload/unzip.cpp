@@ -21,11 +21,10 @@ constexpr std::size_t max_name = 1024;
 
 [[noreturn]] void refuse(const std::string& why) { throw Problem(ProblemKind::bad_scene, "zip: " + why); }
 
-[[noreturn]] void too_large(const std::string& what, std::uint64_t value, std::uint64_t limit) {
+[[noreturn]] void too_large(const std::string& what, const char* name, std::uint64_t value, std::uint64_t limit) {
   throw Problem(ProblemKind::too_large,
                 "zip: " + what + " is at least " + std::to_string(value) + ", the limit is " + std::to_string(limit))
-      .member("limit", limit)
-      .member("value", value);
+      .passed(name, limit, value);
 }
 
 class Unzipper {
@@ -42,7 +41,7 @@ class Unzipper {
     unz_global_info64 info{};
     if (::unzGetGlobalInfo64(zip_.get(), &info) != UNZ_OK) refuse("the directory cannot be read");
     if (info.number_entry > limits_.zip_entries)
-      too_large("the number of entries", info.number_entry, limits_.zip_entries);
+      too_large("the number of entries", "max-zip-entries", info.number_entry, limits_.zip_entries);
     for (std::uint64_t i = 0; i < info.number_entry; ++i) {
       const int moved = i == 0 ? ::unzGoToFirstFile(zip_.get()) : ::unzGoToNextFile(zip_.get());
       if (moved != UNZ_OK) refuse("the directory is damaged");
@@ -88,10 +87,11 @@ class Unzipper {
 
   void count(std::uint64_t bytes) {
     unpacked_ += bytes;
-    if (unpacked_ > limits_.unpacked_bytes) too_large("the unpacked size in bytes", unpacked_, limits_.unpacked_bytes);
+    if (unpacked_ > limits_.unpacked_bytes)
+      too_large("the unpacked size in bytes", "max-unpacked", unpacked_, limits_.unpacked_bytes);
     if (unpacked_ > ratio_free_bytes && unpacked_ / std::max<std::uint64_t>(packed_, 1) >= limits_.zip_ratio)
-      too_large("the ratio of unpacked to packed size", unpacked_ / std::max<std::uint64_t>(packed_, 1),
-                limits_.zip_ratio);
+      too_large("the ratio of unpacked to packed size", "max-zip-ratio",
+                unpacked_ / std::max<std::uint64_t>(packed_, 1), limits_.zip_ratio);
   }
 
   std::string only_scene() const {

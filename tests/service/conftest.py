@@ -54,3 +54,17 @@ def gate(tmp_path: pathlib.Path) -> Gate:
 def patience() -> None:
     """Nothing in these tests may wait for ever."""
     assert PATIENCE < 600
+
+
+@pytest.fixture
+def restart(tmp_path: pathlib.Path) -> Iterator[Callable[..., Service]]:
+    """Starts the service on one data folder again and again; what was started before is gone by then."""
+    running: list[Service] = []
+
+    def begin(*options: str, **kwargs: object) -> Service:
+        running.append(Service(tmp_path / "data", "--grace", "1", *options, **kwargs))  # type: ignore[arg-type]
+        return running[-1]
+
+    yield begin
+    for service in running:
+        service.stop()

@@ -7,7 +7,8 @@ for before it}), `exit` ({code, message} in place of an end), `signal` (to die b
 (ignores SIGTERM), `child` (leaves one behind that holds the pipes), `lines` (printed first, as they are), `flood` (MiB
 of noise on standard error), `warnings`, `silent_frames` (said to be done, but not there), `no_start`, `padding` (bytes
 in each frame), `pace` (seconds each frame takes), `mute` (frames that are made and not reported), `until` (a file:
-`exit`, `signal` and `mute` are for as long as it is there). Every frame begun is noted in a file `ledger` in the job's
+`exit`, `signal` and `mute` are for as long as it is there), `holds` (what `inspect` says of the scene), `inspect_exit`
+(its exit code), `inspect_gate` (FIFO that it waits for). Every frame begun is noted in a file `ledger` in the job's
 folder.
 """
 
@@ -24,7 +25,7 @@ import zlib
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser()
-    parser.add_argument("command", choices=["render", "devices"])
+    parser.add_argument("command", choices=["render", "devices", "inspect"])
     parser.add_argument("scene", nargs="?")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--preview", action="store_true")
@@ -198,8 +199,24 @@ def render(options: argparse.Namespace) -> None:
     say(event="done", frames=len(wanted))
 
 
+def inspect(scene: str) -> None:
+    try:
+        fake = behaviour(scene)
+    except ValueError:
+        sys.exit(3)
+    if "inspect_gate" in fake:
+        open(fake["inspect_gate"], "rb").read()
+    if fake.get("inspect_exit"):
+        print(f"sheaf: {scene}: too much of it", file=sys.stderr)
+        sys.exit(fake["inspect_exit"])
+    print(json.dumps(fake.get("holds", {"triangles": 1, "texture_bytes": 0}), indent=2))
+
+
 if __name__ == "__main__":
     given = parse()
+    if given.command == "inspect":
+        inspect(given.scene)
+        sys.exit(0)
     if given.command == "devices":
         print("[]")
         sys.exit(int(os.environ.get("FAKE_DEVICES_EXIT", "0")))

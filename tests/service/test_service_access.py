@@ -106,3 +106,29 @@ def test_token_files_that_cannot_be_trusted(tmp_path: pathlib.Path) -> None:
     assert ended.returncode == 3 and "chmod" in ended.stderr
     for wanted in ("a", "a=everything", "=read"):
         assert run("--new-token", wanted).returncode == 2
+
+
+def test_tokens_come_and_go_without_a_restart(guarded: tuple[Service, str, str], tmp_path: pathlib.Path) -> None:
+    service, reader, owner = guarded
+    file = tmp_path / "tokens"
+    first, second = file.read_text().splitlines(keepends=True)
+
+    def status(token: str) -> int:
+        return service.http.get("/v1/jobs", headers=bearer(token)).status_code
+
+    assert status(reader) == status(owner) == 200
+    file.write_text(second)  # in place
+    assert (status(reader), status(owner)) == (401, 200)
+    fresh, third = new_token("fresh=read")
+    (tmp_path / "tokens.new").write_text(first + third)  # by another file in its place
+    (tmp_path / "tokens.new").rename(file)
+    assert (status(reader), status(owner), status(fresh)) == (200, 401, 200)
+
+    file.write_text("nonsense\n")  # a slip of an editor locks nobody out, and lets nobody in
+    assert (status(reader), status(owner), status(fresh)) == (200, 401, 200)
+    file.unlink()
+    assert (status(reader), status(owner)) == (200, 401)
+    told = [entry for entry in service.log if entry["message"].startswith("token file is bad")]
+    assert len(told) == 2 and "line 1" in told[0]["reason"]
+    file.write_text(second)
+    assert (status(reader), status(owner)) == (401, 200)

@@ -102,8 +102,8 @@ def test_confinement_can_be_left_out(
 @pytest.mark.parametrize(
     ("options", "worker", "said"),
     [
-        (["--max-wall", "1"], "#!/bin/sh\nexec sleep 1000\n", "--max-wall"),
-        (["--max-cpu", "1"], "#!/bin/sh\nwhile :; do :; done\n", "--max-cpu"),
+        (["--max-wall", "1"], "#!/bin/sh\n[ $1 = render ] && exec sleep 1000\n", "--max-wall"),
+        (["--max-cpu", "1"], "#!/bin/sh\nwhile [ $1 = render ]; do :; done\n", "--max-cpu"),
     ],
 )
 def test_time_is_limited(

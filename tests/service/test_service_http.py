@@ -182,6 +182,27 @@ def test_slow_heads_and_bodies_time_out_and_stop_nobody(start: Callable[..., Ser
         connection.close()
 
 
+def test_slow_clients_hold_up_nobody(start: Callable[..., Service]) -> None:
+    """Far more of them than threads: in the middle of a body, or not reading a reply."""
+    service = start("--http-threads", "2", "--max-stalled", "4", "--io-timeout", "1000")
+    job = service.accepted(gltf(padding=20 << 20), {"frames": 0})
+    service.wait(job)
+    host, port = service.address.rsplit(":", 1)
+    slow = []
+    for i in range(20):
+        connection = socket.create_connection((host, int(port)), 60)
+        if i % 2:
+            connection.sendall(CHUNKED + b"5\r\nab")
+        else:
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            connection.sendall(b"GET /v1/jobs/%s/frames/0.exr HTTP/1.1\r\nHost: a\r\n\r\n" % job.encode())
+        slow.append(connection)
+        assert service.http.get("/healthz").status_code == 200
+    assert service.wait(service.accepted(gltf(), {"frames": 0}))["state"] == "done"
+    for connection in slow:
+        connection.close()
+
+
 def test_connections_are_bounded(start: Callable[..., Service]) -> None:
     service = start("--max-connections", "5")
     host, port = service.address.rsplit(":", 1)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What comes in with a job: scenes, files beside them, archives, cameras; and what must not."""
 
+import base64
+import hashlib
 import io
 import json
 import pathlib
@@ -159,3 +161,37 @@ def test_uploads_are_bounded(start: Callable[..., Service]) -> None:
     reply = service.http.post("/v1/jobs", content=chunks(), headers={"Content-Type": "multipart/form-data; boundary=b"})
     check_problem(reply, 413, "too-large")
     assert not list((service.data / "incoming").iterdir())
+
+
+PART = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n%s\r\n'
+
+
+def sha256(body: bytes) -> str:
+    return f"sha-256=:{base64.b64encode(hashlib.sha256(body).digest()).decode()}:"
+
+
+@pytest.mark.parametrize("more", ["", ", sha-512=:YWJj:", ",unknown=1"])
+def test_an_upload_that_is_what_its_digest_says(sheafd: Service, more: str) -> None:
+    body = PART % gltf() + b"--b--\r\nepilogue"
+    headers = {"Content-Type": "multipart/form-data; boundary=b", "Content-Digest": sha256(body) + more}
+    reply = sheafd.http.post("/v1/jobs", content=body, headers=headers)
+    assert reply.status_code == 202, reply.text
+
+
+@pytest.mark.parametrize("at", [0, 3, 30, 110, -3, -1])
+def test_an_upload_that_changed_on_its_way_is_refused_whole(sheafd: Service, at: int) -> None:
+    body = bytearray(PART % (gltf() + b" " * 70_000) + b"--b--\r\nepilogue")
+    headers = {"Content-Type": "multipart/form-data; boundary=b", "Content-Digest": sha256(bytes(body))}
+    body[at] ^= 1
+    for content in (bytes(body), iter([bytes(body[:100]), bytes(body[100:])])):  # by length, and in chunks
+        problem = check_problem(sheafd.http.post("/v1/jobs", content=content, headers=headers), 422, "digest-mismatch")
+        assert hashlib.sha256(body).hexdigest() in problem["detail"]
+    assert not list((sheafd.data / "incoming").iterdir()) and not list((sheafd.data / "jobs").iterdir())
+
+
+@pytest.mark.parametrize(
+    "digest", ["sha-256", "sha-256=", "sha-256=::", "sha-256=:" + "A" * 44 + ":", "sha-256=:" + "A" * 42 + "B=:", "x"]
+)
+def test_malformed_digests(sheafd: Service, digest: str) -> None:
+    headers = {"Content-Type": "multipart/form-data; boundary=b", "Content-Digest": digest}
+    check_problem(sheafd.http.post("/v1/jobs", content=b"", headers=headers), 400, "malformed-request")

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "jobs/scene_inspector.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/error.hpp"
+#include "http/problem.hpp"
+
+namespace sheaf::server {
+namespace {
+
+constexpr std::size_t most_output = std::size_t{1} << 20;  // facts are a few KB; names in a scene may make them longer
+constexpr int exit_limit = 5;                              // `sheaf`: a limit was exceeded
+
+void bound(const nlohmann::json& facts, const char* fact, const char* name, std::uint64_t limit,
+           const std::string& what) {
+  const auto found = facts.find(fact);
+  if (limit == 0 || found == facts.end() || !found->is_number_unsigned()) return;
+  const auto value = found->get<std::uint64_t>();
+  if (value <= limit) return;
+  throw Problem(ProblemKind::limit_exceeded,
+                "scene: " + std::to_string(value) + " " + what + ", the limit is " + std::to_string(limit))
+      .passed(name, limit, value);
+}
+
+[[noreturn]] void refuse_stopping() {
+  throw Problem(ProblemKind::shutting_down, "no new job is taken").header("Retry-After", "5");
+}
+
+std::string error_line(const std::string& log) {
+  const auto end = std::min(log.find('\n'), log.size());
+  return log.substr(0, std::min<std::size_t>(end, 1000));
+}
+
+}  // namespace
+
+struct SceneInspector::Found {
+  WorkerEnding ending;
+  std::string text, log;  // what it printed; of stderr the beginning
+};
+
+SceneInspector::Found SceneInspector::inspect(const std::filesystem::path& folder, const std::filesystem::path& scene,
+                                              const std::vector<std::string>& arguments) const {
+  ConfinementOptions options = confinement_;
+  options.cpu_seconds = std::min<std::uint64_t>(options.cpu_seconds, limits_.inspect_seconds * 8);  // images: 8 threads
+  const Confinement confinement(options, sheaf_, folder);
+  Found found;
+  const WorkerOutput output{[&](std::string_view line) {
+                              if (found.text.size() < most_output) found.text.append(line).append("\n");
+                            },
+                            [&](std::string_view bytes) {
+                              if (found.log.size() < most_output) found.log.append(bytes);
+                            }};
+  const std::chrono::seconds wall(limits_.inspect_seconds);
+  std::vector<std::string> command{sheaf_, "inspect", scene.string(), "--json"};
+  std::ranges::copy_if(arguments, std::back_inserter(command),
+                       [](const std::string& argument) { return argument.starts_with("--scene-name="); });
+  found.ending = run_worker(command, output, stop_, {std::chrono::milliseconds(0), wall, &confinement});
+  return found;
+}
+
+/// Given back at its end.
+SceneInspector::Turn SceneInspector::wait_for_turn() {
+  std::unique_lock lock(mutex_);
+  if (places_ == 0)
+    throw Problem(ProblemKind::busy, "many scenes are being looked into already").header("Retry-After", "1");
+  --places_;
+  freed_.wait(lock, [this] { return free_ > 0 || stop_.asked(); });
+  if (stop_.asked()) {
+    ++places_;
+    refuse_stopping();
+  }
+  --free_;
+  return {this, [this](void*) {
+            {
+              const std::lock_guard again(mutex_);
+              ++free_, ++places_;
+            }
+            freed_.notify_one();
+          }};
+}
+
+void SceneInspector::check(const std::filesystem::path& folder, const std::filesystem::path& scene,
+                           const std::vector<std::string>& arguments) {
+  if (limits_.triangles == 0 && limits_.texture_bytes == 0) return;
+  const Turn turn = wait_for_turn();
+  Found found;
+  try {
+    found = inspect(folder, scene, arguments);
+  } catch (const Error&) {
+    return;  // it cannot be started: so the job will say as well
+  }
+  if (stop_.asked()) refuse_stopping();
+
+  if (found.ending.timed_out || found.ending.signal == SIGXCPU)
+    throw Problem(ProblemKind::limit_exceeded, "scene: takes more than " + std::to_string(limits_.inspect_seconds) +
+                                                   " s to load, which is the limit")
+        .passed("max-inspect", limits_.inspect_seconds, limits_.inspect_seconds + 1);
+  if (found.ending.exit_code == exit_limit) {
+    std::string reason = error_line(found.log);
+    const std::string hidden = folder.string() + "/";
+    for (auto at = reason.find(hidden); at != std::string::npos; at = reason.find(hidden, at))
+      reason.erase(at, hidden.size());
+    throw Problem(ProblemKind::limit_exceeded, reason);
+  }
+  const auto facts = nlohmann::json::parse(found.text, nullptr, false);
+  if (found.ending.exit_code != 0 || !facts.is_object()) return;
+  bound(facts, "triangles", "max-triangles", limits_.triangles, "triangles");
+  bound(facts, "texture_bytes", "max-textures", limits_.texture_bytes, "bytes of decoded images");
+}
+
+void SceneInspector::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_.force();
+  }
+  freed_.notify_all();
+}
+
+}  // namespace sheaf::server

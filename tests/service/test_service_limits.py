@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: MIT
+"""What one request or job may ask for: each limit by its name, with what it allows and what came."""
+
+import io
+import pathlib
+import random
+import socket
+import subprocess
+import zipfile
+from collections.abc import Callable
+
+import pytest
+from conftest import Gate
+from service import PATIENCE, Service, check_problem, glb, gltf, program
+
+
+def zipped(entries: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as archive:
+        for name, data in entries.items():
+            archive.writestr(name, data)
+    return out.getvalue()
+
+
+SMALL = {
+    "--max-upload": "1",
+    "--max-parts": "8",
+    "--max-unpacked": "2",
+    "--max-zip-entries": "5",
+    "--max-zip-ratio": "50",
+    "--max-frames": "10",
+    "--max-pixels": "10000",
+    "--max-spp": "8",
+    "--max-depth": "3",
+    "--max-memory": "256",
+    "--max-triangles": "1000",
+    "--max-textures": "1",
+}
+
+# What is submitted, and the limit that it passes with the value that is told.
+CASES = {
+    "max-upload": (413, dict(scene=gltf() + b" " * (2 << 20)), 1 << 20, None),
+    "max-parts": (413, dict(scene=gltf(), parts=[("file", (str(i), b"")) for i in range(8)]), 8, 9),
+    "max-unpacked": (
+        413,
+        dict(scene=zipped({"a.gltf": random.Random(1).randbytes(200_000) + b" " * 2_200_000}), name="s.zip"),
+        2 << 20,
+        None,
+    ),
+    "max-zip-entries": (413, dict(scene=zipped({str(i): b"" for i in range(6)}), name="s.zip"), 5, 6),
+    "max-zip-ratio": (413, dict(scene=zipped({"a.gltf": b" " * 1_900_000}), name="s.zip"), 50, None),
+    "max-frames": (422, dict(scene=gltf(), settings={"frames": "0-10"}), 10, 11),
+    "max-pixels": (422, dict(scene=gltf(), settings={"size": "101x100"}), 10_000, 10_100),
+    "max-spp": (422, dict(scene=gltf(), settings={"spp": 9}), 8, 9),
+    "max-depth": (422, dict(scene=gltf(), settings={"depth": 4}), 3, 4),
+    "max-memory": (422, dict(scene=gltf(), settings={"memory": 257}), 256, 257),
+    "max-triangles": (422, dict(scene=gltf(holds={"triangles": 1001})), 1000, 1001),
+    "max-textures": (422, dict(scene=glb(holds={"texture_bytes": 1048577}), name="s.glb"), 1 << 20, 1048577),
+}
+
+
+@pytest.fixture
+def small(start: Callable[..., Service]) -> Service:
+    return start(*[word for pair in SMALL.items() for word in pair])
+
+
+@pytest.mark.parametrize("name", list(CASES))
+def test_each_limit_answers_with_its_name_the_limit_and_the_value(small: Service, name: str) -> None:
+    status, given, limit, value = CASES[name]
+    problem = check_problem(small.submit(**given), status, "too-large" if status == 413 else "limit-exceeded")
+    assert problem["limit_name"] == name and problem["limit"] == limit
+    assert problem["value"] == value if value else problem["value"] >= limit
+    told = small.http.get("/openapi.json").json()["x-limits"][name]
+    assert told["limit"] == limit and told["answer"].startswith(str(status))
+    assert not list((small.data / "incoming").iterdir()) and not list((small.data / "jobs").iterdir())
+
+
+def test_what_keeps_every_limit_is_taken(small: Service) -> None:
+    settings = {"frames": "0-9", "size": "100x100", "spp": 8, "depth": 3, "memory": 256}
+    scene = gltf(holds={"triangles": 1000, "texture_bytes": 1 << 20})
+    assert small.wait(small.accepted(scene, settings))["state"] == "done"
+
+
+def test_settings_and_cameras_are_bounded(sheafd: Service) -> None:
+    limits = sheafd.http.get("/openapi.json").json()["x-limits"]
+    for part in ("settings", "camera"):
+        reply = sheafd.submit(gltf(), parts=[(part, (None, b" " * (limits[part]["limit"] + 1)))])
+        problem = check_problem(reply, 413, "too-large")
+        assert problem["limit_name"] == part and problem["limit"] == limits[part]["limit"] < problem["value"]
+
+
+def test_the_contract_and_the_help_name_every_limit(sheafd: Service) -> None:
+    text = subprocess.run([program("sheafd"), "--help"], capture_output=True, text=True, check=True).stdout
+    limits = sheafd.http.get("/openapi.json").json()["x-limits"]
+    for name in SMALL:
+        assert f"{name} " in text and name.removeprefix("--") in limits
+    for name, told in limits.items():
+        assert name in ("settings", "camera") or f"--{name} " in text, name
+        assert told["limit"] > 0 or name == "min-free"
+
+
+def test_the_engines_own_limits_count_too(sheafd: Service) -> None:
+    problem = check_problem(sheafd.submit(gltf(inspect_exit=5)), 422, "limit-exceeded")
+    assert "scene.gltf" in problem["detail"] and str(sheafd.data) not in problem["detail"]
+
+
+def test_a_scene_that_does_not_load_in_time_is_refused(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--max-inspect", "1")
+    problem = check_problem(service.submit(gltf(inspect_gate=gate.path)), 422, "limit-exceeded")
+    assert problem["limit_name"] == "max-inspect" and problem["limit"] == 1
+
+
+def test_a_bad_scene_is_its_jobs_own_failure(sheafd: Service) -> None:
+    bad = gltf(inspect_exit=3, exit={"code": 3, "message": "scene.gltf: nodes[0] is bad"})
+    end = sheafd.wait(sheafd.accepted(bad, {"frames": 0}))
+    assert end["state"] == "failed" and end["error"]["code"] == "bad-scene"
+
+
+def test_without_such_limits_nobody_looks(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--max-triangles", "0", "--max-textures", "0")
+    service.accepted(gltf(inspect_gate=gate.path, holds={"triangles": 10**12}), {"frames": 0})
+    assert "max-triangles" not in service.http.get("/openapi.json").json()["x-limits"]
+
+
+def test_a_service_that_stops_does_not_wait_for_a_scene(start: Callable[..., Service], gate: Gate) -> None:
+    service = start()
+    host, port = service.address.rsplit(":", 1)
+    part = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n'
+    body = part + gltf(inspect_gate=gate.path) + b"\r\n--b--\r\n"
+    head = b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\n"
+    with socket.create_connection((host, int(port)), PATIENCE) as connection:
+        connection.sendall(head + b"Content-Length: %d\r\n\r\n" % len(body) + body)
+        with open(gate.path, "wb"):  # once the inspection waits there
+            assert service.stop() == 0
+
+
+@pytest.mark.parametrize(
+    ("option", "most", "scene", "value"),
+    [("max-triangles", "2503", "cornell.glb", 2504), ("max-textures", "1", "whitted.glb", 0)],
+)
+def test_the_engine_knows_what_a_scene_holds(
+    start: Callable[..., Service], option: str, most: str, scene: str, value: int
+) -> None:
+    service = start("--" + option, most, sheaf=program("sheaf"))
+    data = (pathlib.Path(__file__).parent / "../scenes" / scene).read_bytes()
+    problem = check_problem(service.submit(data, name=scene), 422, "limit-exceeded")
+    assert problem["limit_name"] == option and problem["value"] > problem["limit"] and problem["value"] >= value
+    good = start("--" + option, "1000000", sheaf=program("sheaf"))
+    assert good.submit(data, name=scene).status_code == 202
