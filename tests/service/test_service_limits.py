@@ -2,16 +2,21 @@
 """What one request or job may ask for: each limit by its name, with what it allows and what came."""
 
 import io
+import json
 import pathlib
 import random
 import socket
+import struct
 import subprocess
 import zipfile
+import zlib
 from collections.abc import Callable
 
 import pytest
 from conftest import Gate
 from service import PATIENCE, Service, check_problem, glb, gltf, program
+
+CORNELL = (pathlib.Path(__file__).parent / "../scenes/cornell.glb").read_bytes()
 
 
 def zipped(entries: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
@@ -134,16 +139,54 @@ def test_a_service_that_stops_does_not_wait_for_a_scene(start: Callable[..., Ser
             assert service.stop() == 0
 
 
+def textured(side: int) -> bytes:
+    """A triangle with a picture of so many pixels along a side."""
+
+    def chunk(kind: bytes, body: bytes) -> bytes:
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0)
+    rows = zlib.compress(bytes(side + 1) * side)
+    png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+    corners = struct.pack("<9f6f", -1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1)
+    binary = corners + png + bytes(-len(png) % 4)
+    document = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0}],
+        "images": [{"bufferView": 2, "mimeType": "image/png"}],
+        "buffers": [{"byteLength": len(binary)}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+            {"buffer": 0, "byteOffset": 60, "byteLength": len(png)},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+        ],
+    }
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
 @pytest.mark.parametrize(
-    ("option", "most", "scene", "value"),
-    [("max-triangles", "2503", "cornell.glb", 2504), ("max-textures", "1", "whitted.glb", 0)],
+    ("option", "most", "fits", "passes", "value"),
+    [
+        ("max-triangles", "1", textured(8), CORNELL, 2504),
+        ("max-textures", "1", textured(512), textured(513), 513**2 * 4),
+    ],
 )
 def test_the_engine_knows_what_a_scene_holds(
-    start: Callable[..., Service], option: str, most: str, scene: str, value: int
+    start: Callable[..., Service], option: str, most: str, fits: bytes, passes: bytes, value: int
 ) -> None:
     service = start("--" + option, most, sheaf=program("sheaf"))
-    data = (pathlib.Path(__file__).parent / "../scenes" / scene).read_bytes()
-    problem = check_problem(service.submit(data, name=scene), 422, "limit-exceeded")
-    assert problem["limit_name"] == option and problem["value"] > problem["limit"] and problem["value"] >= value
-    good = start("--" + option, "1000000", sheaf=program("sheaf"))
-    assert good.submit(data, name=scene).status_code == 202
+    problem = check_problem(service.submit(passes, name="a.glb"), 422, "limit-exceeded")
+    assert problem["limit_name"] == option and problem["value"] == value > problem["limit"]
+    assert service.submit(fits, name="a.glb").status_code == 202
