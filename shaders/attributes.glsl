@@ -18,6 +18,15 @@ vec2 interpolate_uv(uint base, uvec3 v, vec3 b) {
   return base == NO_INDEX ? vec2(0) : load_uv(base + v.x) * b.x + load_uv(base + v.y) * b.y + load_uv(base + v.z) * b.z;
 }
 
+UvFootprint interpolate_uv_footprint(uint base, uvec3 v, vec3 b, vec2 along, vec2 across) {
+  if (base == NO_INDEX) return UvFootprint(vec2(0), vec2(0), vec2(0));
+  vec2 a = load_uv(base + v.x), e1 = load_uv(base + v.y), e2 = load_uv(base + v.z);
+  vec2 at = a * b.x + e1 * b.y + e2 * b.z;
+  e1 -= a;
+  e2 -= a;
+  return UvFootprint(at, e1 * along.x + e2 * along.y, e1 * across.x + e2 * across.y);
+}
+
 vec4 base_color_at(Instance instance, Material material, uvec3 v, vec3 b, vec4 texel) {
   vec4 color = material.base_color * texel;
   if (instance.color != NO_INDEX)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The camera's ray through a pixel of the tile, the same bits in the raster pass and in generate (SHADING.md, Samples).
-Ray camera_ray(uint x, uint y) {
-  precise float sx = 2.0 * ((float(x) + frame.jitter_x) / float(frame.width)) - 1.0;
-  precise float sy = 1.0 - 2.0 * ((float(y) + frame.jitter_y) / float(frame.height));
+// The camera's ray through a place in a pixel, the same bits in the raster pass and in generate (SHADING.md, Samples).
+Ray camera_ray(uint x, uint y, vec2 place) {
+  precise float sx = 2.0 * ((float(x) + place.x) / float(frame.width)) - 1.0;
+  precise float sy = 1.0 - 2.0 * ((float(y) + place.y) / float(frame.height));
   precise vec3 across = frame.right * sx + frame.up * sy;
   Ray ray;
   if (frame.orthographic != 0u) {

@@ -38,6 +38,7 @@ struct Parent {
   float coverage;
   uint pixel;
   uint medium;
+  float cone_width, cone_spread;
 };
 
 Parent load_parent(uint slot) {
@@ -47,6 +48,8 @@ Parent load_parent(uint slot) {
   p.pixel = floatBitsToUint(RAYS(rays, RAY_PIXEL, slot));
   p.medium = floatBitsToUint(RAYS(rays, RAY_MEDIUM, slot));
   p.coverage = RAYS(rays, RAY_COVERAGE, slot);
+  p.cone_width = TEXTURED ? RAYS(rays, RAY_CONE_WIDTH, slot) : 0.0;
+  p.cone_spread = TEXTURED ? RAYS(rays, RAY_CONE_SPREAD, slot) : 0.0;
   return p;
 }
 
@@ -130,7 +133,14 @@ void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec
   RAYS(shadow_rays, RAY_MEDIUM, slot) = uintBitsToFloat(index);
 }
 
-void make_reflection_ray(uint slot, Surface s, vec3 weight, Parent p) {
+// What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's curvature, times
+// the cone's width there, adds to the spread; `scaling`: what becomes of the spread itself.
+vec2 cone_after(Parent p, Surface s, float t, float scaling, float bending) {
+  float width = clamp(p.cone_width + p.cone_spread * t, -1e30, 1e30);
+  return vec2(width, clamp(scaling * p.cone_spread + bending * s.curvature * width, -MAX_SPREAD, MAX_SPREAD));
+}
+
+void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
   if (!worth_a_ray(largest(weight))) {
     no_ray_reflection(slot);
     return;
@@ -143,9 +153,14 @@ void make_reflection_ray(uint slot, Surface s, vec3 weight, Parent p) {
   RAYS(reflection_rays, RAY_PIXEL, slot) = uintBitsToFloat(p.pixel);
   RAYS(reflection_rays, RAY_MEDIUM, slot) = uintBitsToFloat(p.medium);
   RAYS(reflection_rays, RAY_COVERAGE, slot) = 0.0;
+  if (TEXTURED) {
+    vec2 cone = cone_after(p, s, t, 1.0, 2.0);
+    RAYS(reflection_rays, RAY_CONE_WIDTH, slot) = cone.x;
+    RAYS(reflection_rays, RAY_CONE_SPREAD, slot) = cone.y;
+  }
 }
 
-void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel) {
+void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel, vec2 cone) {
   if (!worth_a_ray(max(largest(weight), coverage))) {
     no_ray_refraction(slot);
     return;
@@ -155,6 +170,10 @@ void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint
   RAYS(refraction_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
   RAYS(refraction_rays, RAY_MEDIUM, slot) = uintBitsToFloat(medium);
   RAYS(refraction_rays, RAY_COVERAGE, slot) = coverage;
+  if (TEXTURED) {
+    RAYS(refraction_rays, RAY_CONE_WIDTH, slot) = cone.x;
+    RAYS(refraction_rays, RAY_CONE_SPREAD, slot) = cone.y;
+  }
 }
 
 float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : materials[volume_material(stack & 0xFFu)].ior; }
@@ -168,7 +187,7 @@ bool bend(vec3 d, vec3 n, float eta, out vec3 t) {
 }
 
 // Steps 7 to 9 for a surface that lets light through.
-void make_transmitted_rays(uint slot, Surface s, Material m, vec3 weight, Parent p, float mirror, float nv) {
+void make_transmitted_rays(uint slot, Surface s, Material m, float t, vec3 weight, Parent p, float mirror, float nv) {
   bool volume = VOLUMES && m.volume != 0u;
   float n1 = 1.0, n2 = m.ior;
   uint medium = p.medium;
@@ -188,17 +207,20 @@ void make_transmitted_rays(uint slot, Surface s, Material m, vec3 weight, Parent
   }
   float f = fresnel(min(cos1, 1.0), n1, n2);
   vec3 fs = mix(vec3(f), schlick(s.base.rgb, nv), s.metallic);
-  make_reflection_ray(slot, s, weight * mix(mirror, 1.0, s.transmission) * fs, p);
+  make_reflection_ray(slot, s, t, weight * mix(mirror, 1.0, s.transmission) * fs, p);
   if (!REFRACTIONS) return;
   vec3 through = weight * (s.transmission * (1.0 - s.metallic) * (1.0 - f)) * s.base.rgb;
-  vec3 t = p.ray.direction;
+  vec3 way = p.ray.direction;
   bool passes = f < 1.0;
+  vec2 cone = cone_after(p, s, t, 1.0, 0.0);
   if (volume && passes) {
-    passes = bend(p.ray.direction, n, n1 / n2, t);
-    if (passes && dot(t, s.geometric) >= 0.0) passes = bend(p.ray.direction, s.geometric, n1 / n2, t);
-    t = safe_normalize(t, p.ray.direction);
+    float eta = n1 / n2;
+    passes = bend(p.ray.direction, n, eta, way);
+    if (passes && dot(way, s.geometric) >= 0.0) passes = bend(p.ray.direction, s.geometric, eta, way);
+    way = safe_normalize(way, p.ray.direction);
+    cone = cone_after(p, s, t, eta, eta * cos1 + dot(way, n));
   }
-  make_refraction_ray(slot, s, t, passes ? through : vec3(-1), medium, passes ? 0.0 : -1.0, p.pixel);
+  make_refraction_ray(slot, s, way, passes ? through : vec3(-1), medium, passes ? 0.0 : -1.0, p.pixel, cone);
 }
 
 vec3 absorbed(Parent p, Surface s, Material m, float t) {
@@ -216,7 +238,7 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
   Material m;
-  Surface s = surface_at(triangle, at.barycentric, p.ray.direction, m);
+  Surface s = surface_at(triangle, at.barycentric, p.ray.direction, p.cone_width + p.cone_spread * t, m);
   if (VOLUMES) p.weight *= absorbed(p, s, m, t);
   float alpha = (m.flags & MATERIAL_BLEND) != 0u ? clamp(s.base.a, 0.0, 1.0) : 1.0;
   if (alpha < 1.0) s.transmission = 0.0;  // one straight ray goes on; see SHADING.md, 1
@@ -244,15 +266,16 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
         make_shadow_ray(shadow_slot, i, s, weight, f0, v, p.pixel);
     }
   if (REFRACTIONS && s.transmission > 0.0 && !unlit) {
-    make_transmitted_rays(slot, s, m, weight, p, mirror, nv);
+    make_transmitted_rays(slot, s, m, t, weight, p, mirror, nv);
     return;
   }
   if (REFRACTIONS && alpha < 1.0)
-    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel);
+    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel,
+                        cone_after(p, s, t, 1.0, 0.0));
   else
     no_ray_refraction(slot);
   if (REFLECTIONS && !unlit)
-    make_reflection_ray(slot, s, weight * (mirror * schlick(f0, nv)), p);
+    make_reflection_ray(slot, s, t, weight * (mirror * schlick(f0, nv)), p);
   else
     no_ray_reflection(slot);
 }

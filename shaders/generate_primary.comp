@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The camera's rays of a tile, one a pixel. Under `--primary raster` their hits come with them: the visibility buffer names
-// the triangle and its t.
+// The camera's rays of a batch: one sample of every pixel of a tile, or several of the pixels that adaptive sampling goes on with.
+// Under `--primary raster` their hits come with them: the visibility buffer names the triangle and its t.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -13,7 +13,11 @@ BUFFER(ROLE_RAYS, writeonly, float, rays);
 BUFFER(ROLE_HITS, writeonly, uvec2, hits);
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_VISIBILITY, readonly, uvec2, visibility);
+BUFFER(ROLE_ACTIVE_PIXELS, readonly, uint, active_pixels);
+BUFFER(ROLE_SAMPLE_PLACES, readonly, vec2, sample_places);
 layout(constant_id = 1) const bool RASTER = true;
+layout(constant_id = 2) const bool ADAPTIVE = false;
+layout(constant_id = 9) const bool TEXTURED = true;
 
 // Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
 // them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
@@ -29,7 +33,7 @@ uvec2 pixel_of(uint i) {
 
 void main() {
   uint i = global_index();
-  uint count = frame.tile_width * frame.tile_height;
+  uint count = frame.batch_rays;
   if (i == 0u) {
     counters[COUNT_SLOTS + KIND_PRIMARY] = count;
     if (RASTER) {
@@ -38,12 +42,24 @@ void main() {
     }
   }
   if (i >= count) return;
-  uvec2 at = pixel_of(i);
+  uvec2 at;
+  vec2 place = frame.place;
+  if (ADAPTIVE) {
+    uint which = active_pixels[i / frame.batch_samples];
+    at = uvec2(which % frame.tile_width, which / frame.tile_width);
+    place = sample_places[frame.sample_index + i % frame.batch_samples];
+  } else {
+    at = pixel_of(i);
+  }
   uint pixel = at.y * frame.tile_width + at.x;
-  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y);
+  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, place);
   STORE_RAY(rays, i, ray.origin, ray.direction, ray.tmin, ray.tmax, vec3(1));
   RAYS(rays, RAY_PIXEL, i) = uintBitsToFloat(pixel);
   RAYS(rays, RAY_MEDIUM, i) = 0.0;
   RAYS(rays, RAY_COVERAGE, i) = 1.0;
+  if (TEXTURED) {
+    RAYS(rays, RAY_CONE_WIDTH, i) = frame.cone_width;
+    RAYS(rays, RAY_CONE_SPREAD, i) = frame.cone_spread;
+  }
   hits[i] = RASTER ? visibility[pixel] : uvec2(NO_INDEX);
 }

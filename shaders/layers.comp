@@ -23,7 +23,7 @@ void main() {
     Corners corners = load_triangle(triangle);
     TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
     Material material;
-    Surface s = surface_at(triangle, at.barycentric, ray.direction, material);
+    Surface s = surface_at(triangle, at.barycentric, ray.direction, 0.0, material);
     words[LAYER_DEPTH] = dot(s.point - frame.eye, frame.forward);
     for (uint c = 0u; c < 3u; ++c) {
       words[LAYER_NORMAL + c] = s.normal[c];

@@ -14,7 +14,7 @@ layout(location = 0) flat in uint triangle;
 
 void main() {
   uvec2 at = uvec2(gl_FragCoord.xy);
-  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y);
+  Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, frame.place);
   Corners corners = load_triangle(triangle);
   TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
   if (!(h.t >= ray.tmin && h.t <= ray.tmax)) return;

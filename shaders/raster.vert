@@ -16,7 +16,7 @@ void main() {
   float y = dot(v, frame.up) / dot(frame.up, frame.up);
   float z = dot(v, frame.forward);
   // The sample's offset in its pixel moves the picture the other way; pixel centres are where rasterisers sample.
-  vec2 shift = vec2(1.0 - 2.0 * frame.jitter_x, 1.0 - 2.0 * frame.jitter_y) / vec2(frame.width, frame.height);
+  vec2 shift = (1.0 - 2.0 * frame.place) / vec2(frame.width, frame.height);
   // Clip z only keeps what lies before the near plane (or within rounding of the eye) away from w = 0.
   float near = max(frame.near, frame.box_pad);
   if (frame.orthographic != 0u)

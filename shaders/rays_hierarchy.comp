@@ -49,7 +49,7 @@ void main() {
   for (uint k = first; k < last; ++k) {
     RayNode n = child_node(k);
     float distance = length(n.centre - centre);
-    radius = max(radius, distance > 0.0 || n.radius > 0.0 ? (distance + n.radius) * (1.0 + PAD) : 0.0);
+    radius = max(radius, n.centre != centre || n.radius > 0.0 ? (distance + n.radius) * (1.0 + PAD) + LEAST : 0.0);
     angle = max(angle, angle_between(axis, n.axis) + n.angle);
   }
   uint at = push.first + i * RAY_NODE_WORDS;

@@ -41,11 +41,12 @@ void main() {
   float chord = length(far_corner);
   float angle = size > 1e-3 && chord < 1.4 ? 2.0 * arc(0.5 * chord, sqrt(1.0 - 0.25 * chord * chord)) : 4.0;
   float radius = length(0.5 * (hi - lo));
+  bool apart = hi != lo;
   uint at = bundle * RAY_NODE_WORDS;
   ray_nodes[at] = centre.x;
   ray_nodes[at + 1u] = centre.y;
   ray_nodes[at + 2u] = centre.z;
-  ray_nodes[at + 3u] = radius > 0.0 ? radius * (1.0 + PAD) + PAD * max(max(abs(centre.x), abs(centre.y)), abs(centre.z)) : 0.0;
+  ray_nodes[at + 3u] = apart ? radius * (1.0 + PAD) + PAD * max(max(abs(centre.x), abs(centre.y)), abs(centre.z)) + LEAST : 0.0;
   ray_nodes[at + 4u] = axis.x;
   ray_nodes[at + 5u] = axis.y;
   ray_nodes[at + 6u] = axis.z;

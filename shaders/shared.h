@@ -59,7 +59,9 @@ using mat3 = glm::mat3;
 #define ROLE_STATS 50
 #define ROLE_BOXES 51
 #define ROLE_STRUCTURE 52  // the one role that is an acceleration structure
-#define ROLE_COUNT 53
+#define ROLE_ACTIVE_PIXELS 53
+#define ROLE_SAMPLE_PLACES 54
+#define ROLE_COUNT 55
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 
@@ -79,6 +81,10 @@ SHEAF_CONST RAY_PIXEL = 11u;     // index in the band; NO_INDEX: the slot holds 
 SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light
 SHEAF_CONST RAY_COVERAGE = 13u;
 SHEAF_CONST RAY_WORDS = 14u;
+// Only where textures are filtered: the ray's cone (SHADING.md, Texture filter).
+SHEAF_CONST RAY_CONE_WIDTH = 14u;
+SHEAF_CONST RAY_CONE_SPREAD = 15u;
+SHEAF_CONST RAY_WORDS_WITH_CONE = 16u;
 
 // Counters written by the device; one block, cleared at the start of a band.
 SHEAF_CONST COUNT_PARENTS = 0u;       // rays whose hits the next generate reads
@@ -209,6 +215,7 @@ struct TextureUse {
   uint first_texel;
   uint width;
   uint height;
+  uint levels;       // of the mip chain behind first_texel; 1: only the image itself
 };
 
 struct Material {
@@ -258,7 +265,7 @@ struct Light {
   float spot_offset;
 };
 
-struct Frame {      // per frame and sample
+struct Frame {      // per frame and batch of samples
   vec3 eye;         // relative to the frame origin
   float near;
   vec3 right;       // camera axes, scaled by half the image plane's extent at distance 1 (perspective) or by its half extents
@@ -270,13 +277,16 @@ struct Frame {      // per frame and sample
   vec3 environment;
   uint width;
   uint height;
-  float jitter_x;
-  float jitter_y;
+  vec2 place;         // of the sample in its pixel; unused where a batch holds several samples
+  uint batch_rays;    // camera rays of this batch: pixels times samples
+  uint batch_samples;
+  float cone_width;   // of a camera ray at its origin …
+  float cone_spread;  // … and what a unit of t adds to it
   uint lights;
   uint triangles;
   uint capacity;    // slots of a ray list
   uint instances;
-  uint sample_index;
+  uint sample_index;  // the batch's first
   float box_pad;    // what every box is widened by: 2^-21 of the largest coordinate, see triangle.glsl
   uint tile_x;
   uint tile_y;
@@ -310,8 +320,8 @@ struct Deform {     // one deforming instance's vertices
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TextureUse) == 44);
-static_assert(sizeof(Material) == 72 + 6 * 44);
+static_assert(sizeof(TextureUse) == 48);
+static_assert(sizeof(Material) == 72 + 6 * 48);
 static_assert(sizeof(Instance) == 4 * (21 + 1 + 11));
 }  // namespace sheaf::gpu
 #endif

@@ -18,11 +18,14 @@ struct Surface {
   float occlusion;
   float transmission;
   vec2 uv;
+  float curvature;    // of the shading normal towards the ray's side: > 0 where it bulges; 0 without textures
   uint object;
 };
 
 vec3 transform_direction(Instance i, vec3 v) { return vec3(dot(i.row0, v), dot(i.row1, v), dot(i.row2, v)); }
 vec3 transform_normal(Instance i, vec3 v) { return vec3(dot(i.normal0, v), dot(i.normal1, v), dot(i.normal2, v)); }
+
+const float MAX_SPREAD = 1e3;  // of a ray's cone: past it nothing has detail left
 
 float max_of(vec3 v) { return max(max(v.x, v.y), v.z); }
 
@@ -51,7 +54,51 @@ vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 
   return safe_normalize(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
 }
 
-Surface surface_at(uint triangle, vec3 b, vec3 direction, out Material material) {
+// The ellipse in which a cone of width 1 meets the surface, as two diameters: in the plane of incidence and across it
+// (Akenine-Möller et al., "Improved Shader and Texture Level of Detail Using Ray Cones", JCGT 2021).
+void footprint_axes(vec3 normal, vec3 direction, out vec3 along, out vec3 across) {
+  float cosine = dot(normal, direction);
+  vec3 level = direction - cosine * normal;
+  vec3 any = abs(normal.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+  along = dot(level, level) > 1e-12 ? normalize(level) : normalize(cross(normal, any));
+  across = cross(normal, along);
+  along /= max(abs(cosine), 1e-3);
+}
+
+struct Slopes {  // what a step in the triangle's plane adds to the weights of v1 and v2
+  vec2 along, across;
+};
+
+Slopes slopes_of(vec3 e1, vec3 e2, vec3 along, vec3 across) {
+  vec3 n = cross(e1, e2);
+  float area = length(n);
+  vec3 unit = n / area;
+  Slopes s = Slopes(vec2(dot(cross(along, e2), unit), dot(cross(e1, along), unit)) / area,
+                    vec2(dot(cross(across, e2), unit), dot(cross(e1, across), unit)) / area);
+  return area > 0.0 ? s : Slopes(vec2(0), vec2(0));
+}
+
+// The mean of the normal curvatures along both axes: how much the interpolated normal turns towards a step, a unit of the step.
+float curvature_of(Instance instance, uvec3 v, vec3 b, Slopes s, vec3 along, vec3 across) {
+  vec3 n0, n1, n2;
+  if (instance.dynamic != NO_INDEX) {
+    uvec3 d = 3u * (v + instance.dynamic) + 1u;
+    n0 = load_dynamic(d.x), n1 = load_dynamic(d.y), n2 = load_dynamic(d.z);
+  } else {
+    uvec3 w = v + instance.first_vertex;
+    n0 = transform_normal(instance, load_normal(w.x));
+    n1 = transform_normal(instance, load_normal(w.y));
+    n2 = transform_normal(instance, load_normal(w.z));
+  }
+  float size = length(n0 * b.x + n1 * b.y + n2 * b.z);
+  vec3 d1 = n1 - n0, d2 = n2 - n0;
+  float turns = dot(d1 * s.along.x + d2 * s.along.y, along) / dot(along, along) +
+                dot(d1 * s.across.x + d2 * s.across.y, across) / dot(across, across);
+  float curvature = 0.5 * turns / size;
+  return abs(curvature) < INFINITY ? curvature : 0.0;  // false for a NaN: no normal
+}
+
+Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Material material) {
   Corners corners = load_triangle(triangle);
   Looks looks = looks_of(instance_of(corners));
   Instance instance = looks.instance;
@@ -66,11 +113,21 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, out Material material)
   s.point_error = gamma7 * (abs(v0 * b.x) + abs(v1 * b.y) + abs(v2 * b.z));
   s.reach = max_of(max(max(abs(v0 - point), abs(v1 - point)), abs(v2 - point)));
   vec3 g = safe_normalize(cross(v1 - v0, v2 - v0), -direction) * instance.determinant_sign;
-  vec2 uv0 = interpolate_uv(instance.uv0, v, b), uv1 = interpolate_uv(instance.uv1, v, b);
+  TexturePoint point_uv;
+  s.curvature = 0.0;
+  if (TEXTURED) {
+    vec3 along, across;
+    footprint_axes(g, direction, along, across);
+    Slopes slopes = slopes_of(v1 - v0, v2 - v0, along, across);
+    point_uv = TexturePoint(interpolate_uv_footprint(instance.uv0, v, b, slopes.along * abs(width), slopes.across * abs(width)),
+                            interpolate_uv_footprint(instance.uv1, v, b, slopes.along * abs(width), slopes.across * abs(width)));
+    if (width != 0.0) s.curvature = curvature_of(instance, v, b, slopes, along, across);
+  }
   vec4 texels[TEXTURES];
-  look_up_all(instance.material, TEXTURES, uv0, uv1, texels);
+  look_up_filtered(instance.material, point_uv, texels);
   vec3 n = shading_normal(instance, material, v, b, g, texels[TEXTURE_NORMAL].xyz);
   s.front = dot(g, direction) < 0.0;
+  if (!s.front) s.curvature = -s.curvature;
   s.geometric = s.front ? g : -g;
   s.normal = s.front ? n : -n;
   s.base = base_color_at(instance, material, v, b, texels[TEXTURE_BASE_COLOR]);
@@ -80,7 +137,7 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, out Material material)
   s.emission = material.emissive * texels[TEXTURE_EMISSIVE].rgb;
   s.occlusion = 1.0 + material.uses[TEXTURE_OCCLUSION].strength * (texels[TEXTURE_OCCLUSION].r - 1.0);
   s.transmission = clamp(material.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
-  s.uv = uv0;
+  s.uv = TEXTURED ? point_uv.uv0.at : interpolate_uv(instance.uv0, v, b);
   s.object = instance.object;
   return s;
 }

@@ -83,8 +83,13 @@ float exact_difference(float a, float b, float c, float d) {
   return difference;
 }
 
-// Edge functions of the sheared triangle; inside where none have opposite signs.
-void edge_functions(Shear s, vec3 v0, vec3 v1, vec3 v2, out vec3 e, out vec3 z) {
+struct Edges {
+  vec2 a, b, c;  // the corners, sheared: the ray goes through (0, 0)
+  vec3 e;        // edge functions: inside where none have opposite signs
+  vec3 z;        // distances of the corners along the ray
+};
+
+Edges edge_functions(Shear s, vec3 v0, vec3 v1, vec3 v2) {
   precise vec3 a = permute(v0 - s.origin, s.axis);
   precise vec3 b = permute(v1 - s.origin, s.axis);
   precise vec3 c = permute(v2 - s.origin, s.axis);
@@ -99,9 +104,19 @@ void edge_functions(Shear s, vec3 v0, vec3 v1, vec3 v2, out vec3 e, out vec3 z) 
     if (v == 0.0) v = exact_difference(ax, cy, ay, cx);
     if (w == 0.0) w = exact_difference(bx, ay, by, ax);
   }
-  e = vec3(u, v, w);
   precise vec3 depth = s.sz * vec3(a.z, b.z, c.z);
-  z = depth;
+  return Edges(vec2(ax, ay), vec2(bx, by), vec2(cx, cy), vec3(u, v, w), depth);
+}
+
+// The weights e/Σe put the hit where Σ e·(x, y)/Σe = 0. What rounding products adds to e breaks that by up to 2^-23·|product|/Σe of the
+// triangle's extent: on a needle, or one seen edge-on, along its length, and t with it. Differences of exact products end that: what is left
+// of the error is that of the sheared corners, as if the triangle itself had been moved by some ulps. Signs stay: rounding is monotone.
+vec3 exact_where_ill_conditioned(Edges t) {
+  vec3 p = abs(vec3(t.c.x * t.b.y, t.a.x * t.c.y, t.b.x * t.a.y)), q = abs(vec3(t.c.y * t.b.x, t.a.y * t.c.x, t.b.y * t.a.x));
+  vec3 product = max(p, q);
+  if (max(max(product.x, product.y), product.z) <= 4.0 * abs(t.e.x + t.e.y + t.e.z)) return t.e;
+  return vec3(exact_difference(t.c.x, t.b.y, t.c.y, t.b.x), exact_difference(t.a.x, t.c.y, t.a.y, t.c.x),
+              exact_difference(t.b.x, t.a.y, t.b.y, t.a.x));
 }
 
 struct TriangleHit {
@@ -115,9 +130,10 @@ TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, fl
   result.hit = false;
   result.t = 0.0;
   result.barycentric = vec3(0);
-  vec3 e, z;
-  edge_functions(s, v0, v1, v2, e, z);
+  Edges edges = edge_functions(s, v0, v1, v2);
+  vec3 e = edges.e, z = edges.z;
   if ((e.x < 0.0 || e.y < 0.0 || e.z < 0.0) && (e.x > 0.0 || e.y > 0.0 || e.z > 0.0)) return result;
+  e = exact_where_ill_conditioned(edges);
   precise float det = e.x + e.y + e.z;
   if (det == 0.0) return result;
   precise float t = (e.x * z.x + e.y * z.y + e.z * z.z) / det;
@@ -136,8 +152,8 @@ TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, fl
 // The point of a triangle that a ray is known to hit (the rasteriser may have seen it just outside): weights not below 0.
 TriangleHit project_to_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float tmin) {
   TriangleHit result;
-  vec3 e, z;
-  edge_functions(s, v0, v1, v2, e, z);
+  Edges edges = edge_functions(s, v0, v1, v2);
+  vec3 e = exact_where_ill_conditioned(edges), z = edges.z;
   float sum = e.x + e.y + e.z;
   e = sum < 0.0 ? max(-e, vec3(0)) : max(e, vec3(0));
   precise float det = e.x + e.y + e.z;

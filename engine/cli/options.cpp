@@ -57,6 +57,15 @@ double parse_fps(const std::string& text) {
   return fps;
 }
 
+std::string quality_help() {
+  std::ostringstream text;
+  text << "named settings, which others given beside it change:";
+  for (const auto& q : qualities)
+    text << (&q == qualities.data() ? " " : "; ") << q.name << " = --spp " << q.samples << " --depth " << q.depth
+         << " --cutoff " << q.cutoff;
+  return text.str();
+}
+
 template <typename T>
 T one_of(const std::string& option, const std::string& value, const std::vector<std::pair<std::string, T>>& choices) {
   std::string known;
@@ -80,9 +89,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                      "frame f shows time f / fps, 24000/1001 for example; default the camera path's, else 24");
   command.add_option("--animation", o.animation, "name, index or all; default the first");
   command.add_option("--size", o.size, "WIDTHxHEIGHT")->capture_default_str();
-  command.add_option("--spp", o.settings.samples, "samples a pixel")->capture_default_str();
-  command.add_option("--depth", o.settings.depth, "generations of reflection and refraction")->capture_default_str();
-  command.add_option("--cutoff", o.settings.cutoff, "least weight of a ray worth following")->capture_default_str();
+  command.add_option("--quality", o.quality, quality_help());
+  command.add_option("--spp", o.spp, "samples a pixel, or adaptive:ERROR[:MOST]: more where the error is; default 1");
+  command.add_option("--filter", o.filter, "how samples make up a pixel: box, triangle or gaussian")
+      ->capture_default_str();
+  command.add_option("--depth", o.depth, "generations of reflection and refraction; default 4");
+  command.add_option("--cutoff", o.cutoff, "least weight of a ray worth following; default 0.002");
   command.add_option("--strategy", o.strategy, "auto, hybrid, crsh, rsh, bvh, brute, rayquery, reference")
       ->capture_default_str();
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
@@ -108,6 +120,11 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
 void resolve_options(RenderOptions& o) {
   RenderSettings& s = o.settings;
   parse_size(o.size, s);
+  const Quality& quality = parse_quality(o.quality);
+  parse_samples(o.spp.value_or(quality.samples), s);
+  s.depth = o.depth.value_or(quality.depth);
+  s.cutoff = o.cutoff.value_or(quality.cutoff);
+  s.filter = parse_filter(o.filter);
   s.strategy = parse_strategy(o.strategy);
   s.sort = one_of<SortPolicy>("sort", o.sort,
                               {{"auto", SortPolicy::automatic}, {"on", SortPolicy::on}, {"off", SortPolicy::off}});

@@ -35,6 +35,8 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
   }
   RenderSettings small = settings;
   small.samples = 1;
+  if (small.adaptive_error) small.primary = PrimaryMethod::trace;
+  small.adaptive_error.reset();
   small.counted = false;
   small.layers = {};
   FrameRequest band = first;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scene/pose.hpp"
+#include "shared.h"
 
 namespace sheaf {
 namespace {
@@ -100,8 +101,12 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   plan.refractions = features.translucent() && settings.depth > 0;
   if (!plan.refractions) leave("refraction", settings.depth == 0 ? "--depth 0" : "no transmissive or blended material");
   if (!features.volumes) leave("media", "no volume that refracts and absorbs");
-  plan.raster = settings.primary == PrimaryMethod::raster;
-  if (!plan.raster) leave("raster", "--primary trace");
+  plan.adaptive = settings.adaptive_error.has_value();
+  plan.raster = settings.primary == PrimaryMethod::raster && !plan.adaptive;
+  if (!plan.raster)
+    leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels" : "--primary trace");
+  plan.ray_words = features.textured ? gpu::RAY_WORDS_WITH_CONE : gpu::RAY_WORDS;
+  if (!features.textured) leave("texture filter", "no textures");
   plan.deform = features.skinned || features.morphed;
   if (!plan.deform) leave("deform", "nothing is skinned or morphed over time");
   if (!features.geometry_moves()) leave("animate", "nothing moves after the first frame");

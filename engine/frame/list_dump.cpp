@@ -10,7 +10,7 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "dump", scene.triangle_words().bytes(), Kind::readback);
-  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_WORDS * 4, Kind::readback);
+  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * memory.ray_words * 4, Kind::readback);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
   counters_ = Buffer(device, "dump", gpu::COUNT_WORDS * 4, Kind::readback);

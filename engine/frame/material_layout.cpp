@@ -2,11 +2,14 @@
 #include "frame/material_layout.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "core/error.hpp"
+#include "frame/mip_levels.hpp"
 #include "frame/scene_layout.hpp"
 
 namespace sheaf {
@@ -14,8 +17,27 @@ namespace {
 
 constexpr std::size_t max_volumes = 255;  // a byte of a ray's medium stack
 
-// `first`: where each image's texels start. A texture without an image reads as none.
-gpu::TextureUse lay_out_use(const Scene& scene, const std::vector<std::uint32_t>& first, const TextureUse& use) {
+// Lays out each image that is used, once for each way its levels are made.
+class Images {
+ public:
+  Images(const Scene& scene, std::vector<std::uint32_t>& texels) : scene_(scene), texels_(texels) {}
+
+  std::uint32_t first_texel(std::uint32_t image, MipContent content, std::uint32_t levels) {
+    const auto [at, is_new] = first_.try_emplace({image, content, levels}, static_cast<std::uint32_t>(texels_.size()));
+    if (is_new) append_mip_levels(scene_.images[image], content, levels, texels_);
+    if (texels_.size() > max_texels) throw limit_error(scene_.path, "more than 2^30 texels");
+    return at->second;
+  }
+
+ private:
+  static constexpr std::size_t max_texels = std::size_t{1} << 30U;  // byte offsets into them fit 32 bits
+  const Scene& scene_;
+  std::vector<std::uint32_t>& texels_;
+  std::map<std::tuple<std::uint32_t, MipContent, std::uint32_t>, std::uint32_t> first_;
+};
+
+// A texture without an image reads as none.
+gpu::TextureUse lay_out_use(const Scene& scene, Images& images, const TextureUse& use, MipContent content) {
   gpu::TextureUse g{};
   g.strength = use.strength;
   if (!use.present()) return g;
@@ -24,9 +46,10 @@ gpu::TextureUse lay_out_use(const Scene& scene, const std::vector<std::uint32_t>
   g.offset = use.offset;
   g.scale = use.scale;
   g.turn = {static_cast<float>(std::cos(double{use.rotation})), static_cast<float>(std::sin(double{use.rotation}))};
-  g.first_texel = first[texture.image];
   g.width = scene.images[texture.image].width;
   g.height = scene.images[texture.image].height;
+  g.levels = texture.mipmapped ? static_cast<std::uint32_t>(std::bit_width(std::max(g.width, g.height))) : 1;
+  g.first_texel = images.first_texel(texture.image, content, g.levels);
   g.flags = static_cast<std::uint32_t>(texture.wrap_s) | static_cast<std::uint32_t>(texture.wrap_t) << 2U |
             (texture.nearest ? gpu::TEXTURE_NEAREST : 0) | (use.uv_set == 1 ? gpu::TEXTURE_UV1 : 0) | gpu::TEXTURE_HERE;
   return g;
@@ -56,8 +79,7 @@ std::uint32_t flags_of(const Material& material, const RenderSettings& settings)
   return flags;
 }
 
-gpu::Material lay_out_material(const Scene& scene, const std::vector<std::uint32_t>& first, const Material& m,
-                               const RenderSettings& settings) {
+gpu::Material lay_out_material(const Scene& scene, Images& images, const Material& m, const RenderSettings& settings) {
   gpu::Material g{};
   g.base_color = m.base_color;
   g.emissive = m.emissive;
@@ -68,24 +90,15 @@ gpu::Material lay_out_material(const Scene& scene, const std::vector<std::uint32
   g.ior = m.ior;
   g.absorption = absorption(m);
   g.flags = flags_of(m, settings);
-  g.uses[gpu::TEXTURE_BASE_COLOR] = lay_out_use(scene, first, m.base_color_texture);
-  g.uses[gpu::TEXTURE_METALLIC_ROUGHNESS] = lay_out_use(scene, first, m.metallic_roughness_texture);
-  g.uses[gpu::TEXTURE_NORMAL] = lay_out_use(scene, first, m.normal_texture);
-  g.uses[gpu::TEXTURE_OCCLUSION] = lay_out_use(scene, first, m.occlusion_texture);
-  g.uses[gpu::TEXTURE_EMISSIVE] = lay_out_use(scene, first, m.emissive_texture);
-  g.uses[gpu::TEXTURE_TRANSMISSION] = lay_out_use(scene, first, m.transmission_texture);
+  const bool see_through = m.alpha_mode != AlphaMode::opaque && !settings.opaque;
+  const auto base = see_through ? MipContent::color_by_alpha : MipContent::color;
+  g.uses[gpu::TEXTURE_BASE_COLOR] = lay_out_use(scene, images, m.base_color_texture, base);
+  g.uses[gpu::TEXTURE_METALLIC_ROUGHNESS] = lay_out_use(scene, images, m.metallic_roughness_texture, MipContent::data);
+  g.uses[gpu::TEXTURE_NORMAL] = lay_out_use(scene, images, m.normal_texture, MipContent::data);
+  g.uses[gpu::TEXTURE_OCCLUSION] = lay_out_use(scene, images, m.occlusion_texture, MipContent::data);
+  g.uses[gpu::TEXTURE_EMISSIVE] = lay_out_use(scene, images, m.emissive_texture, MipContent::color);
+  g.uses[gpu::TEXTURE_TRANSMISSION] = lay_out_use(scene, images, m.transmission_texture, MipContent::data);
   return g;
-}
-
-std::vector<std::uint32_t> lay_out_images(const Scene& scene, SceneLayout& layout) {
-  std::vector<std::uint32_t> first;
-  for (const auto& image : scene.images) {
-    first.push_back(static_cast<std::uint32_t>(layout.texels.size()));
-    const std::size_t texels = image.rgba.size() / 4, at = layout.texels.size();
-    layout.texels.resize(at + texels);
-    if (texels != 0) std::memcpy(&layout.texels[at], image.rgba.data(), texels * 4);
-  }
-  return first;
 }
 
 }  // namespace
@@ -97,11 +110,11 @@ std::vector<std::uint32_t> lay_out_materials(const Scene& scene, const RenderSet
                                              [&](auto m) { return is_volume(scene.materials[m], settings); });
   const auto volume_count = static_cast<std::size_t>(volumes - by_place.begin());
   if (volume_count > max_volumes) throw limit_error(scene.path, "more than 255 materials with a volume");
-  const auto first_texel = lay_out_images(scene, layout);
+  Images images(scene, layout.texels);
   std::vector<std::uint32_t> place(scene.materials.size());
   for (std::uint32_t p = 0; p < by_place.size(); ++p) {
     place[by_place[p]] = p;
-    auto material = lay_out_material(scene, first_texel, scene.materials[by_place[p]], settings);
+    auto material = lay_out_material(scene, images, scene.materials[by_place[p]], settings);
     material.volume = p < volume_count ? p + 1 : 0;
     material.id = by_place[p] + 1;
     layout.materials.push_back(material);

@@ -8,8 +8,7 @@
 namespace sheaf {
 namespace {
 
-constexpr std::uint64_t list_bytes = gpu::RAY_WORDS * 4 + 8 + 4;  // a slot: ray, hit, place in the order
-constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;            // accumulation, visibility, output and its read-back
+constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;        // accumulation, visibility, output and its read-back
 constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;  // keys, kept order, chunks twice, skeleton, digit counts
 constexpr std::uint32_t least_capacity = 1024;
 
@@ -18,19 +17,20 @@ std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   if (plan.shadows) lists += 1;
   if (plan.reflections) lists += 1;
   if (plan.refractions) lists += 2;
-  std::uint64_t bytes = lists * list_bytes + pixel_bytes;
+  // A slot: ray, hit, place in the order.
+  std::uint64_t bytes = lists * (plan.ray_words * 4 + 8 + 4) + pixel_bytes;
   if (features.translucent() || features.masked) bytes += 12;
   if (plan.sorts) bytes += sort_bytes;
   if (plan.ray_hierarchy) bytes += gpu::RAY_NODE_WORDS * 4 / 3 + 1;
   return bytes;
 }
 
-RayList make_list(const Device& device, const char* name, std::uint32_t capacity, bool optical_depth) {
+RayList make_list(const Device& device, const char* name, const RayMemory& m, bool optical_depth) {
   RayList list;
-  list.rays = Buffer(device, name, std::uint64_t{capacity} * gpu::RAY_WORDS * 4);
-  list.hits = Buffer(device, name, std::uint64_t{capacity} * 8);
-  list.order = Buffer(device, name, std::uint64_t{capacity} * 4);
-  if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{capacity} * 12);
+  list.rays = Buffer(device, name, std::uint64_t{m.capacity} * m.ray_words * 4);
+  list.hits = Buffer(device, name, std::uint64_t{m.capacity} * 8);
+  list.order = Buffer(device, name, std::uint64_t{m.capacity} * 4);
+  if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{m.capacity} * 12);
   return list;
 }
 
@@ -54,17 +54,18 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
   const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;
   std::uint64_t slots = std::min(budget / bytes_per_slot(plan, features), wanted);
-  slots = std::min(slots, device.limits().storage_range / (gpu::RAY_WORDS * 4));
+  slots = std::min(slots, device.limits().storage_range / (plan.ray_words * 4));
   slots = std::min<std::uint64_t>(slots, std::uint64_t{1} << 24U);
   slots = std::max<std::uint64_t>(slots, std::max<std::uint64_t>(least_capacity, per_pixel));
   m.capacity = static_cast<std::uint32_t>(slots);
+  m.ray_words = plan.ray_words;
   m.tile_pixels = static_cast<std::uint32_t>(std::max<std::uint64_t>(slots / per_pixel, 1));
 
-  m.shadow = make_list(device, "shadow rays", m.capacity, true);
-  m.reflection[1] = make_list(device, "primary rays", m.capacity, false);
-  if (plan.reflections) m.reflection[0] = make_list(device, "reflection rays", m.capacity, false);
+  m.shadow = make_list(device, "shadow rays", m, true);
+  m.reflection[1] = make_list(device, "primary rays", m, false);
+  if (plan.reflections) m.reflection[0] = make_list(device, "reflection rays", m, false);
   if (plan.refractions)
-    for (auto& list : m.refraction) list = make_list(device, "refraction rays", m.capacity, false);
+    for (auto& list : m.refraction) list = make_list(device, "refraction rays", m, false);
 
   using Kind = Buffer::Kind;
   const std::uint64_t pixels = m.tile_pixels;
@@ -76,6 +77,11 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8);
   m.output = Buffer(device, "output", pixels * 16);
   m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback);
+  if (plan.adaptive) {
+    m.accumulation_readback = Buffer(device, "accumulation", pixels * 32, Kind::readback);
+    m.active_pixels = Buffer(device, "active pixels", pixels * 4, Kind::upload);
+    m.sample_places = Buffer(device, "sample places", (std::uint64_t{settings.samples} + 1) * 8, Kind::upload);
+  }
   m.frame = Buffer(device, "frame", sizeof(gpu::Frame));
   m.stats = Buffer(device, "stats", gpu::STAT_WORDS * 8);
   m.stats_readback = Buffer(device, "stats", gpu::STAT_WORDS * 8, Kind::readback);

@@ -26,12 +26,14 @@ inline constexpr std::uint32_t max_records = 4096;
 
 struct RayMemory {
   std::uint32_t capacity = 0;     // slots of a list
+  std::uint32_t ray_words = 0;    // of a slot
   std::uint32_t tile_pixels = 0;  // most pixels of a tile
   RayList shadow;
   std::array<RayList, 2> reflection, refraction;  // generations take turns; reflection[1] also holds the primary rays
   Buffer counters, args, block_sums, accumulation, visibility, output, readback, counters_readback;
   Buffer keys, order_kept, chunks, chunks_alt, digits, skeleton, ray_nodes, bundle_flags, bundle_list;
   Buffer pixel_tests, pixel_tests_readback, layers, layers_readback, stats, stats_readback, frame;
+  Buffer accumulation_readback, active_pixels, sample_places;  // of adaptive sampling
   Buffer records, records_readback;  // the counters as they stood after each list was traced, for the stats
 };
 

@@ -19,6 +19,8 @@ class ReferenceFrames final : public FrameSource {
     s.width = settings_.width;
     s.height = settings_.height;
     s.spp = settings_.samples;
+    s.adaptive_error = settings_.adaptive_error;
+    s.filter = settings_.filter;
     s.depth = settings_.depth;
     s.cutoff = settings_.cutoff;
     s.opaque = settings_.opaque;

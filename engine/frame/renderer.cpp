@@ -4,28 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 #include "core/error.hpp"
-#include "stages/sort.hpp"
 
 namespace sheaf {
 namespace {
 
 constexpr std::uint32_t generations_a_submit = 4;  // between looks at whether any ray is left
-
-double radical_inverse(std::uint32_t i) {
-  double result = 0, digit = 0.5;
-  for (; i != 0; i >>= 1U, digit *= 0.5)
-    if ((i & 1U) != 0) result += digit;
-  return result;
-}
-
-// Root first; trees of different heights agree at the bottom.
-void add_levels(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& more) {
-  if (sum.size() < more.size()) sum.insert(sum.begin(), more.size() - sum.size(), 0);
-  for (std::size_t below = 1; below <= more.size(); ++below) sum[sum.size() - below] += more[more.size() - below];
-}
 
 }  // namespace
 
@@ -43,9 +28,12 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Features& fea
       generate_(device, plan_, features_, settings.counted),
       compact_(device),
       shade_(device, features_, settings.counted),
-      resolve_(device) {
+      resolve_(device),
+      places_(pixel_samples(settings.filter, settings.samples)) {
+  places_.emplace_back(0.5);
   if (plan_.raster) raster_.emplace(device, features_);
   if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
+  if (memory_.sample_places) std::copy(places_.begin(), places_.end(), memory_.sample_places.view<glm::vec2>().begin());
   tracer_ = make_tracer({device_, scene_, memory_, plan_, features_, settings_, strategy, settings.counted});
 }
 
@@ -60,7 +48,7 @@ void Renderer::bind_all() {
   if (memory_.pixel_tests) recorder_.bind(ROLE_PIXEL_TESTS, memory_.pixel_tests);
 }
 
-void Renderer::set_frame(const CameraView& camera, std::uint32_t sample, const Tile& tile) {
+void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Tile& tile) {
   gpu::Frame f{};
   const double aspect = static_cast<double>(settings_.width) / settings_.height;
   const double half_y = camera.orthographic ? camera.half_height : camera.tan_half_y;
@@ -75,14 +63,18 @@ void Renderer::set_frame(const CameraView& camera, std::uint32_t sample, const T
   f.environment = settings_.environment.value_or(glm::vec3(features_.default_light ? 0.4F : 0.0F));
   f.width = settings_.width;
   f.height = settings_.height;
-  const double n = settings_.samples;
-  f.jitter_x = n == 1 ? 0.5F : static_cast<float>(radical_inverse(sample) + 0.5 / n);
-  f.jitter_y = n == 1 ? 0.5F : static_cast<float>((sample + 0.5) / n);
+  f.place = glm::vec2(places_[batch.first]);
+  f.batch_rays = batch.rays;
+  f.batch_samples = batch.samples;
+  // A sample stands for its share of the pixel.
+  const double share =
+      2 * half_y / settings_.height / std::sqrt(adaptive_ ? 2.0 * AdaptivePixels::first_round : settings_.samples);
+  (camera.orthographic ? f.cone_width : f.cone_spread) = static_cast<float>(share);
   f.lights = scene_.lights();
   f.triangles = scene_.triangles();
   f.capacity = memory_.capacity;
   f.instances = static_cast<std::uint32_t>(scene_.layout().instances.size());
-  f.sample_index = sample;
+  f.sample_index = batch.first;
   f.box_pad = scene_.box_pad();
   f.tile_x = tile.x;
   f.tile_y = tile.y;
@@ -105,7 +97,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   const Motion motion = scene_.update(request.pose, request.camera, recorder_);
   bind_all();
   const Tile whole = request.only.value_or(Tile{0, 0, settings_.width, settings_.height});
-  set_frame(request.camera, 0, whole);
+  set_frame(request.camera, {}, whole);
   animate_.record(recorder_, scene_, motion);
   objects_.record(recorder_, scene_, motion);
   tracer_->objects_moved(recorder_, motion);
@@ -113,7 +105,11 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
     dump_->begin(request.number);
     list_dump_->triangles(recorder_, *dump_);
   }
-  render_tiles(request, whole, out);
+  if (settings_.adaptive_error)
+    adaptive_.emplace(settings_.width, settings_.height, *settings_.adaptive_error, settings_.samples);
+  do render_tiles(request, whole, out);
+  while (adaptive_ && adaptive_->next_round());
+  if (adaptive_) store_adaptive(out);
   if (dump_ != nullptr) dump_->end();
 
   const auto times = recorder_.take_times();
@@ -150,6 +146,69 @@ void Renderer::render_tiles(const FrameRequest& request, const Tile& tile, Rende
 }
 
 bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, RenderedFrame& out) {
+  begin_tile(tile);
+  if (adaptive_) return render_round(request, tile, out);
+  if (layers_) render_layers(request, tile);
+  for (std::uint32_t sample = 0; sample < settings_.samples; ++sample) {
+    if (render_batch(request, {sample, 1, tile.pixels()}, tile)) continue;
+    if (dump_ != nullptr) dump_->rewind();
+    return false;
+  }
+  resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples);
+  finish_tile(tile);
+  store_tile(tile, out);
+  return true;
+}
+
+// The samples of this round of the tile's active pixels, as many at once as the lists hold.
+bool Renderer::render_round(const FrameRequest& request, const Tile& tile, RenderedFrame& out) {
+  const std::uint32_t active = list_active_pixels(tile);
+  if (active == 0) return true;
+  const std::uint32_t first = adaptive_->first_sample(), all = adaptive_->samples();
+  if (layers_ && first == 0) render_layers(request, tile);
+  std::uint32_t at_once = std::clamp(memory_.tile_pixels / active, 1U, all);
+  for (std::uint32_t done = 0; done < all;) {
+    const std::uint32_t samples = std::min(at_once, all - done);
+    if (render_batch(request, {first + done, samples, samples * active}, tile)) {
+      done += samples;
+      continue;
+    }
+    if (dump_ != nullptr) dump_->rewind();
+    if (at_once == 1) return false;
+    at_once /= 2;
+    done = 0;
+    begin_tile(tile);
+  }
+  recorder_.copy(memory_.accumulation, memory_.accumulation_readback, std::uint64_t{tile.pixels()} * 32);
+  finish_tile(tile);
+  store_round(tile);
+  store_counts(tile, out);
+  return true;
+}
+
+std::uint32_t Renderer::list_active_pixels(const Tile& tile) {
+  const auto list = memory_.active_pixels.view<std::uint32_t>();
+  std::uint32_t active = 0;
+  constexpr std::uint32_t side = 8;  // block by block, so that neighbours in the list are neighbours in the picture
+  for (std::uint32_t top = 0; top < tile.height; top += side)
+    for (std::uint32_t left = 0; left < tile.width; left += side)
+      for (std::uint32_t y = top; y < std::min(top + side, tile.height); ++y)
+        for (std::uint32_t x = left; x < std::min(left + side, tile.width); ++x)
+          if (adaptive_->active(std::size_t{tile.y + y} * settings_.width + tile.x + x))
+            list[active++] = y * tile.width + x;
+  return active;
+}
+
+// The layers are what the rays through the pixels' centres see.
+void Renderer::render_layers(const FrameRequest& request, const Tile& tile) {
+  if (settings_.samples == 1) return;  // then the one sample is that ray
+  camera_hits(request, {settings_.samples, 1, tile.pixels()}, tile);
+  layers_->record(recorder_, memory_, tile.pixels());
+  recorder_.fill(memory_.stats, 0);  // not rays of the picture
+  if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
+}
+
+void Renderer::begin_tile(const Tile& tile) {
   recorder_.stage("generate");
   recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
   recorder_.fill(memory_.stats, 0);
@@ -157,32 +216,30 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   record_pairs_.clear();
   if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
   if (dump_ != nullptr) dump_->mark();
-  for (std::uint32_t sample = 0; sample < settings_.samples; ++sample) {
-    if (render_sample(request, sample, tile)) continue;
-    if (dump_ != nullptr) dump_->rewind();
-    return false;
-  }
-  resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples);
+}
+
+void Renderer::finish_tile(const Tile& tile) {
   recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
   if (memory_.pixel_tests)
     recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
   recorder_.copy(memory_.records, memory_.records_readback, records_.size() * gpu::COUNT_WORDS * 4);
   recorder_.submit_and_wait();
-  store_tile(tile, out);
-  return true;
 }
 
-bool Renderer::render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile) {
-  set_frame(request.camera, sample, tile);
+void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile) {
+  set_frame(request.camera, batch, tile);
   recorder_.fill(memory_.counters, 0);
   if (raster_) raster_->record(recorder_, scene_, memory_, tile, settings_.width, settings_.height);
-  generate_.primary(recorder_, memory_, tile.pixels());
-  if (!raster_) {
-    compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, tile.pixels());
-    tracer_->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
-  }
-  if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, tile.pixels());
-  if (layers_ && sample == 0) layers_->record(recorder_, memory_, tile.pixels());
+  generate_.primary(recorder_, memory_, batch.rays);
+  if (raster_) return;
+  compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, batch.rays);
+  tracer_->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
+}
+
+bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile) {
+  camera_hits(request, batch, tile);
+  if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
+  if (layers_ && settings_.samples == 1) layers_->record(recorder_, memory_, tile.pixels());
   generate_.secondary(recorder_, memory_, 0, true, settings_.depth == 0);
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();
@@ -223,77 +280,10 @@ void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
   record_pairs_.push_back(tracer_->pairs_per_level());
 }
 
-void Renderer::collect_generations(RenderedFrame& out) {
-  const auto words = memory_.records_readback.view<std::uint32_t>();
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    const auto* counters = &words[r * gpu::COUNT_WORDS];
-    const auto [generation, kind] = records_[r];
-    if (counters[gpu::COUNT_RAYS + kind] == 0) continue;
-    auto found =
-        std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
-          return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
-        });
-    if (found == out.stats.generations.end()) {
-      out.stats.generations.push_back({});
-      found = std::prev(out.stats.generations.end());
-      found->index = generation;
-      found->kind = static_cast<RayKind>(kind);
-      found->sort_reason = plan_.sorts ? "key changes in less than one ray of sixteen" : "strategy or --sort off";
-    }
-    found->rays += counters[gpu::COUNT_RAYS + kind];
-    add_levels(found->pairs_per_level, record_pairs_[r]);
-    if (!plan_.sorts || kind == gpu::KIND_PRIMARY) continue;
-    const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
-    found->key_bits = layout.bits();
-    found->chunks += counters[gpu::COUNT_CHUNKS];
-    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE];
-    found->tight += counters[gpu::COUNT_TIGHT];
-    if (counters[gpu::COUNT_SORT] != 0) {
-      found->sorted = true;
-      found->sort_reason =
-          settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
-    }
-  }
-}
-
 void Renderer::trace_shadows(std::uint32_t generation) {
   if (!plan_.shadows) return;
   trace(memory_.shadow, gpu::KIND_SHADOW, generation);
   shade_.record(recorder_, memory_);
-}
-
-void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
-  const auto pixels = memory_.readback.view<float>();
-  for (std::uint32_t y = 0; y < tile.height; ++y)
-    std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(y) * tile.width * 4, std::size_t{tile.width} * 4,
-                out.layers.rgba.begin() + (static_cast<std::ptrdiff_t>(tile.y + y) * settings_.width + tile.x) * 4);
-  if (layers_) Layers::store(memory_, tile, scene_.origin(), out.layers);
-  if (!out.layers.tests.empty()) {
-    const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
-    for (std::uint32_t i = 0; i < tile.pixels(); ++i)
-      out.layers.tests[std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width] =
-          static_cast<float>(tests[i]);
-  }
-  collect_stats(out);
-  collect_generations(out);
-}
-
-void Renderer::collect_stats(RenderedFrame& out) {
-  const auto stats = memory_.stats_readback.view<std::uint64_t>();
-  for (std::uint32_t kind = 0; kind < ray_kinds; ++kind) {
-    const auto* of = &stats[kind * gpu::STAT_FIELDS];
-    out.stats.rays[kind] += of[gpu::STAT_RAYS];
-    out.stats.hits[kind] += of[gpu::STAT_HITS];
-    out.stats.node_object[kind] += of[gpu::STAT_NODE_OBJECT];
-    out.stats.ray_box[kind] += of[gpu::STAT_RAY_BOX];
-    out.stats.ray_triangle[kind] += of[gpu::STAT_RAY_TRIANGLE];
-    auto& levels = out.stats.node_object_by_level[kind];  // root last: level 0 are the rays
-    for (std::uint32_t l = 0; l < gpu::MAX_LEVELS; ++l) {
-      if (of[gpu::STAT_LEVELS + l] == 0) continue;
-      if (levels.size() <= l) levels.resize(l + 1);
-      levels[l] += of[gpu::STAT_LEVELS + l];
-    }
-  }
 }
 
 }  // namespace sheaf

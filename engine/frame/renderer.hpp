@@ -13,6 +13,8 @@
 #include "frame/ray_lists.hpp"
 #include "output/exr_writer.hpp"
 #include "output/stats.hpp"
+#include "sampling/adaptive_pixels.hpp"
+#include "sampling/pixel_samples.hpp"
 #include "stages/animate.hpp"
 #include "stages/compact.hpp"
 #include "stages/generate.hpp"
@@ -51,16 +53,29 @@ class Renderer {
   void set_dump(DumpWriter* dump);
 
  private:
-  void set_frame(const CameraView& camera, std::uint32_t sample, const Tile& tile);
+  struct Batch {  // camera rays that go through the pipeline together
+    std::uint32_t first = 0, samples = 1, rays = 0;
+  };
+
+  void set_frame(const CameraView& camera, const Batch& batch, const Tile& tile);
   void render_tiles(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
   [[nodiscard]] bool render_tile(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
-  [[nodiscard]] bool render_sample(const FrameRequest& request, std::uint32_t sample, const Tile& tile);
+  [[nodiscard]] bool render_round(const FrameRequest& request, const Tile& tile, RenderedFrame& out);
+  [[nodiscard]] std::uint32_t list_active_pixels(const Tile& tile);
+  void render_layers(const FrameRequest& request, const Tile& tile);
+  void begin_tile(const Tile& tile);
+  void finish_tile(const Tile& tile);
+  void camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile);
+  [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);
   void trace_shadows(std::uint32_t generation);
   void note_record(std::uint32_t kind, std::uint32_t generation);
   void collect_generations(RenderedFrame& out);
   void bind_all();
   void store_tile(const Tile& tile, RenderedFrame& out);
+  void store_round(const Tile& tile);
+  void store_adaptive(RenderedFrame& out) const;
+  void store_counts(const Tile& tile, RenderedFrame& out);
   void collect_stats(RenderedFrame& out);
 
   const Device& device_;
@@ -79,6 +94,8 @@ class Renderer {
   Shade shade_;
   Resolve resolve_;
   std::unique_ptr<Tracer> tracer_;
+  std::vector<glm::dvec2> places_;          // of the samples in their pixel; behind them, its centre
+  std::optional<AdaptivePixels> adaptive_;  // of the frame at work
   std::vector<std::pair<std::uint32_t, std::uint32_t>> records_;  // (generation, kind) of the tile's records
   std::vector<std::vector<std::uint64_t>> record_pairs_;          // a record: Tracer::pairs_per_level
   DumpWriter* dump_ = nullptr;

@@ -2,28 +2,19 @@
 #include "reference/reference.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
 
 #include "core/error.hpp"
 #include "reference/whitted.hpp"
+#include "sampling/adaptive_pixels.hpp"
 
 namespace sheaf {
 namespace {
 
 using namespace reference;
-
-double radical_inverse(std::uint32_t i) {
-  double result = 0, digit = 0.5;
-  for (; i != 0; i >>= 1, digit /= 2) result += digit * (i & 1);
-  return result;
-}
-
-glm::dvec2 sample_place(std::uint32_t sample, std::uint32_t of) {
-  if (of == 1) return glm::dvec2(0.5);
-  return {radical_inverse(sample) + 0.5 / of, (sample + 0.5) / of};
-}
 
 class Renderer {
  public:
@@ -34,6 +25,7 @@ class Renderer {
         world_(build_world(scene, pose, glm::dvec3(view.to_world[3]))),
         tracer_(world_.triangles, threads),
         surfaces_(scene, world_, settings.opaque),
+        places_(pixel_samples(settings.filter, settings.spp)),
         whitted_(tracer_, surfaces_, world_lights(scene, pose, view, world_.origin),
                  settings.environment.value_or(glm::dvec3(has_lights(scene) ? 0.0 : 0.4)), settings) {
     frame_.width = settings.width;
@@ -53,16 +45,25 @@ class Renderer {
   }
 
   ReferenceFrame render(std::uint32_t threads) {
+    if (settings_.adaptive_error)
+      adaptive_.emplace(settings_.width, settings_.height, *settings_.adaptive_error, settings_.spp);
+    do round(threads);
+    while (adaptive_ && adaptive_->next_round());
+    for (std::size_t i = 0; adaptive_ && i < frame_.rgba.size(); ++i) frame_.rgba[i] = glm::vec4(adaptive_->mean(i));
+    return std::move(frame_);
+  }
+
+ private:
+  void round(std::uint32_t threads) {
+    next_row_ = 0;
     std::vector<std::jthread> helpers;
     for (std::uint32_t i = 1; i < threads; ++i) helpers.emplace_back([this] { rows(); });
     rows();
     helpers.clear();
     if (failure_) std::rethrow_exception(failure_);
     if (stopped()) throw Error(ErrorKind::interrupted, "reference: interrupted");
-    return std::move(frame_);
   }
 
- private:
   [[nodiscard]] bool stopped() const { return settings_.stop != nullptr && settings_.stop->load(); }
 
   void rows() try {
@@ -84,14 +85,33 @@ class Renderer {
   }
 
   void pixel(std::uint32_t x, std::uint32_t y, ReferenceCounts& counts) {
+    const std::size_t at = std::size_t{y} * settings_.width + x;
+    if (adaptive_ && !adaptive_->active(at)) return;
+    const std::uint32_t first = adaptive_ ? adaptive_->first_sample() : 0;
+    const std::uint32_t count = adaptive_ ? adaptive_->samples() : settings_.spp;
     glm::dvec4 sum(0);
-    for (std::uint32_t s = 0; s < settings_.spp; ++s) {
-      const Ray ray = camera_ray(glm::dvec2(x, y) + sample_place(s, settings_.spp));
-      const Radiance radiance = whitted_.trace(ray, counts);
+    for (std::uint32_t s = first; s < first + count; ++s) {
+      const Radiance radiance = traced(glm::dvec2(x, y) + places_[s], counts);
       sum += glm::dvec4(radiance.color, radiance.alpha);
-      if (s == 0 && radiance.first.triangle != none) layers(std::size_t{y} * settings_.width + x, ray, radiance.first);
     }
-    frame_.rgba[std::size_t{y} * settings_.width + x] = glm::vec4(sum / static_cast<double>(settings_.spp));
+    if (adaptive_)
+      adaptive_->add(at, sum);
+    else
+      frame_.rgba[at] = glm::vec4(sum / static_cast<double>(settings_.spp));
+    if (first != 0) return;
+    const Ray centre = camera_ray(glm::dvec2(x, y) + 0.5);
+    Tests unused;
+    const Hit hit = tracer_.closest(
+        centre, [this](const Hit& h) { return surfaces_.exists(h); }, unused);
+    if (hit.triangle != none) layers(at, centre, hit);
+  }
+
+  [[nodiscard]] Radiance traced(const glm::dvec2& at, ReferenceCounts& counts) const {
+    const double half = view_.orthographic ? view_.half_height : view_.tan_half_y;
+    const double samples = adaptive_ ? 2 * AdaptivePixels::first_round : settings_.spp;
+    const double share =
+        2 * half / settings_.height / std::sqrt(samples);  // a sample stands for its share of the pixel
+    return whitted_.trace(camera_ray(at), view_.orthographic ? share : 0, view_.orthographic ? 0 : share, counts);
   }
 
   [[nodiscard]] Ray camera_ray(const glm::dvec2& at) const {
@@ -108,7 +128,7 @@ class Renderer {
   }
 
   void layers(std::size_t at, const Ray& ray, const Hit& hit) {
-    const Surface s = surfaces_.at(hit, ray.direction);
+    const Surface s = surfaces_.at(hit, ray.direction, 0);
     frame_.depth[at] = static_cast<float>(glm::dot(s.point, -glm::dvec3(view_.to_world[2])));
     frame_.normal[at] = s.normal;
     frame_.position[at] = s.point + world_.origin;
@@ -124,7 +144,9 @@ class Renderer {
   World world_;
   Tracer tracer_;
   Surfaces surfaces_;
+  std::vector<glm::dvec2> places_;
   Whitted whitted_;
+  std::optional<AdaptivePixels> adaptive_;
   ReferenceFrame frame_;
   std::atomic<std::uint32_t> next_row_{0};
   std::mutex mutex_;

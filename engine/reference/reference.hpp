@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "sampling/pixel_samples.hpp"
 #include "scene/camera_path.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene.hpp"
@@ -22,7 +23,9 @@ struct ReferenceTriangle {
 };
 
 struct ReferenceSettings {
-  std::uint32_t width = 640, height = 360, spp = 1;
+  std::uint32_t width = 640, height = 360, spp = 1;  // spp: where samples are adaptive, the most
+  std::optional<double> adaptive_error;              // see AdaptivePixels
+  PixelFilter filter = PixelFilter::gaussian;
   std::uint32_t depth = 4;                  // generations of rays after the camera's
   double cutoff = 0.002;                    // weights below make no further rays
   bool opaque = false;                      // every surface opaque: no alpha, no transmission
@@ -35,7 +38,8 @@ struct ReferenceCounts {  // by kind: primary, shadow, reflection, refraction
   std::array<std::uint64_t, 4> rays{}, hits{}, box_tests{}, triangle_tests{};
 };
 
-/// Pixels row by row from the top. Layers hold sample 0's first hit; a miss: depth +inf, triangle `none`, else 0.
+/// Pixels row by row from the top. Layers hold what the ray through a pixel's centre meets first; a miss: depth +inf,
+/// triangle `none`, else 0.
 struct ReferenceFrame {
   std::uint32_t width = 0, height = 0;
   glm::dvec3 origin{0};              // of the triangles: the camera's position

@@ -31,11 +31,13 @@ struct Surfaces::Point {
   const Material& material;
   glm::uvec3 v;
   glm::dvec3 b;
-  glm::dvec2 uv0, uv1;
+  UvFootprint uv0, uv1;
+  const Textures& textures;
 
-  [[nodiscard]] glm::dvec4 look_up(const Scene& scene, const TextureUse& use, bool srgb = false) const {
-    return reference::look_up(scene, use, uv0, uv1, srgb);
+  [[nodiscard]] glm::dvec4 look_up(const TextureUse& use, TexelKind kind = TexelKind::number) const {
+    return filtered ? textures.mean(use, uv0, uv1, kind) : textures.at(use, uv0, uv1, kind);
   }
+  bool filtered = false;
 };
 
 Surfaces::Point Surfaces::point(const Hit& hit) const {
@@ -48,8 +50,9 @@ Surfaces::Point Surfaces::point(const Hit& hit) const {
           scene_.materials[mesh.material],
           v,
           hit.barycentric,
-          interpolate(mesh.uv0, v, hit.barycentric, glm::dvec2(0)),
-          interpolate(mesh.uv1, v, hit.barycentric, glm::dvec2(0))};
+          {interpolate(mesh.uv0, v, hit.barycentric, glm::dvec2(0))},
+          {interpolate(mesh.uv1, v, hit.barycentric, glm::dvec2(0))},
+          textures_};
 }
 
 std::uint32_t Surfaces::material_of(const Hit& hit) const {
@@ -62,7 +65,7 @@ bool Surfaces::is_volume(std::uint32_t index) const {
 }
 
 glm::dvec4 Surfaces::base_color(const Point& p) const {
-  return glm::dvec4(p.material.base_color) * p.look_up(scene_, p.material.base_color_texture, true) *
+  return glm::dvec4(p.material.base_color) * p.look_up(p.material.base_color_texture, textures_.base_kind(p.material)) *
          interpolate(p.mesh.colors, p.v, p.b, glm::dvec4(1));
 }
 
@@ -72,7 +75,7 @@ double Surfaces::coverage(const Point& p, double alpha) const {
 
 double Surfaces::transmission(const Point& p) const {
   if (opaque_) return 0;
-  return std::clamp(p.material.transmission * p.look_up(scene_, p.material.transmission_texture).r, 0.0, 1.0);
+  return std::clamp(p.material.transmission * p.look_up(p.material.transmission_texture).r, 0.0, 1.0);
 }
 
 bool Surfaces::exists(const Hit& hit) const {
@@ -91,13 +94,50 @@ glm::dvec3 Surfaces::shading_normal(const Point& p, const glm::dvec3& geometric)
   const glm::dvec3 t = unit(interpolate(p.instance.tangents, p.v, p.b, glm::dvec3(0)), glm::dvec3(0));
   const double handedness = p.mesh.tangents[p.v.x].w < 0 ? -1 : 1;  // the same at all three vertices
   const glm::dvec3 bitangent = glm::cross(n, t) * (handedness * p.instance.side);
-  const glm::dvec3 texel = glm::dvec3(p.look_up(scene_, p.material.normal_texture)) * 2.0 - 1.0;
+  const glm::dvec3 texel = glm::dvec3(p.look_up(p.material.normal_texture)) * 2.0 - 1.0;
   const double strength = p.material.normal_texture.strength;
   return unit(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
 }
 
-Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction) const {
-  const Point p = point(hit);
+// Widens the point to the ellipse in which a cone of that width meets the surface (SHADING.md, Texture filter). Returns
+// how much the interpolated normal turns towards a step along the surface, a unit of the step.
+double Surfaces::spread_over(Point& p, const glm::dvec3& geometric, const glm::dvec3& direction, double width) const {
+  const glm::dvec3 e1 = p.triangle.v[1] - p.triangle.v[0], e2 = p.triangle.v[2] - p.triangle.v[0],
+                   n = glm::cross(e1, e2);
+  const double area2 = glm::dot(n, n);
+  if (!(area2 > 0)) return 0;
+  const double cosine = glm::dot(geometric, direction);
+  const glm::dvec3 level = direction - cosine * geometric;
+  const glm::dvec3 any = std::abs(geometric.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 way = glm::normalize(glm::dot(level, level) > 1e-12 ? level : glm::cross(geometric, any));
+  const glm::dvec3 across = glm::cross(geometric, way), along = way / std::max(std::abs(cosine), 1e-3);
+  const auto step = [&](const glm::dvec3& a) {  // what it adds to the weights of the triangle's second and third vertex
+    return glm::dvec2(glm::dot(glm::cross(a, e2), n), glm::dot(glm::cross(e1, a), n)) / area2;
+  };
+  const auto slope = [&](const auto& values, const glm::dvec3& a, const auto& zero) {
+    using Value = std::decay_t<decltype(zero)>;
+    if (values.empty()) return zero;
+    const Value v0(values[p.v.x]), v1(values[p.v.y]), v2(values[p.v.z]);
+    const glm::dvec2 s = step(a);
+    return (v1 - v0) * s.x + (v2 - v0) * s.y;
+  };
+  const auto widen = [&](UvFootprint& f, const std::vector<glm::vec2>& uvs) {
+    f.along = slope(uvs, along, glm::dvec2(0)) * width;
+    f.across = slope(uvs, across, glm::dvec2(0)) * width;
+  };
+  widen(p.uv0, p.mesh.uv0);
+  widen(p.uv1, p.mesh.uv1);
+  p.filtered = true;
+  const double size = glm::length(interpolate(p.instance.normals, p.v, p.b, glm::dvec3(0)));
+  if (!(size > 0)) return 0;
+  const auto turn = [&](const glm::dvec3& a) {
+    return glm::dot(slope(p.instance.normals, a, glm::dvec3(0)), a) / glm::dot(a, a) / size;
+  };
+  return (turn(along) + turn(across)) / 2;
+}
+
+Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction, double width) const {
+  Point p = point(hit);
   const Material& m = p.material;
   Surface s;
   const glm::dvec3 parts[3] = {p.triangle.v[0] * p.b.x, p.triangle.v[1] * p.b.y, p.triangle.v[2] * p.b.z};
@@ -106,24 +146,26 @@ Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction) const {
   const glm::dvec3 size = glm::abs(parts[0]) + glm::abs(parts[1]) + glm::abs(parts[2]);
   s.offset = 1e-12 * std::max({size.x, size.y, size.z});
   const glm::dvec3 g = front_normal(hit, -direction);
+  const double curvature = spread_over(p, g, direction, std::abs(width));
   const glm::dvec3 n = shading_normal(p, g);
   s.front = glm::dot(g, direction) < 0;
   s.geometric = s.front ? g : -g;
+  s.curvature = s.front ? curvature : -curvature;
   s.normal = s.front ? n : -n;
   const glm::dvec4 base = base_color(p);
   s.base = base;
   s.alpha = coverage(p, base.a);
-  const glm::dvec4 metallic_roughness = p.look_up(scene_, m.metallic_roughness_texture);
+  const glm::dvec4 metallic_roughness = p.look_up(m.metallic_roughness_texture);
   s.metallic = std::clamp(m.metallic * metallic_roughness.b, 0.0, 1.0);
   s.roughness = std::clamp(m.roughness * metallic_roughness.g, 0.0, 1.0);
-  s.emission = glm::dvec3(m.emissive) * glm::dvec3(p.look_up(scene_, m.emissive_texture, true));
-  s.occlusion = 1 + m.occlusion_texture.strength * (p.look_up(scene_, m.occlusion_texture).r - 1);
+  s.emission = glm::dvec3(m.emissive) * glm::dvec3(p.look_up(m.emissive_texture, TexelKind::color));
+  s.occlusion = 1 + m.occlusion_texture.strength * (p.look_up(m.occlusion_texture).r - 1);
   s.transmission = s.alpha < 1 ? 0 : transmission(p);
   s.material = p.mesh.material;
   s.volume = is_volume(s.material);
   s.unlit = m.unlit;
   s.ior = m.ior;
-  s.uv = p.uv0;
+  s.uv = p.uv0.at;
   s.node = p.instance.node;
   return s;
 }
@@ -134,7 +176,7 @@ glm::dvec3 Surfaces::transmittance(const Hit& hit, const glm::dvec3& direction) 
   if (!opaque_ && p.material.alpha_mode == AlphaMode::mask && base.a < p.material.alpha_cutoff) return glm::dvec3(1);
   glm::dvec3 passed(0);
   if (!p.material.unlit) {
-    const double metal = p.material.metallic * p.look_up(scene_, p.material.metallic_roughness_texture).b;
+    const double metal = p.material.metallic * p.look_up(p.material.metallic_roughness_texture).b;
     const double cosine = std::min(std::abs(glm::dot(front_normal(hit, -direction), direction)), 1.0);
     const double share = transmission(p) * (1 - std::clamp(metal, 0.0, 1.0));
     if (share > 0) passed = glm::dvec3(base) * (share * (1 - fresnel(cosine, 1, p.material.ior)));

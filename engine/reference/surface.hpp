@@ -2,6 +2,7 @@
 // What a hit needs to know about the surface there (SHADING.md: Geometry, Material at a point).
 #pragma once
 
+#include "reference/texture.hpp"
 #include "reference/tracer.hpp"
 #include "reference/world.hpp"
 
@@ -20,6 +21,7 @@ struct Surface {
   bool volume, unlit;
   double ior;
   glm::dvec2 uv;
+  double curvature;  // of the shading normal: > 0 where the surface bulges towards the ray
   std::uint32_t node, material;
 
   /// A start on the side that `towards` points to.
@@ -31,9 +33,11 @@ struct Surface {
 /// Reads the scene's surfaces; keeps references to both, which must outlive it.
 class Surfaces {
  public:
-  Surfaces(const Scene& scene, const World& world, bool opaque) : scene_(scene), world_(world), opaque_(opaque) {}
+  Surfaces(const Scene& scene, const World& world, bool opaque)
+      : scene_(scene), world_(world), textures_(scene, opaque), opaque_(opaque) {}
 
-  [[nodiscard]] Surface at(const Hit& hit, const glm::dvec3& direction) const;
+  /// `width`: of the ray's cone at the hit; textures are means over what it covers.
+  [[nodiscard]] Surface at(const Hit& hit, const glm::dvec3& direction, double width) const;
 
   /// False for a point that an alpha mask cuts out.
   [[nodiscard]] bool exists(const Hit& hit) const;
@@ -51,6 +55,8 @@ class Surfaces {
  private:
   struct Point;
   [[nodiscard]] Point point(const Hit& hit) const;
+  [[nodiscard]] double spread_over(Point& p, const glm::dvec3& geometric, const glm::dvec3& direction,
+                                   double width) const;
   [[nodiscard]] glm::dvec4 base_color(const Point& p) const;
   [[nodiscard]] double coverage(const Point& p, double alpha) const;
   [[nodiscard]] double transmission(const Point& p) const;
@@ -58,6 +64,7 @@ class Surfaces {
 
   const Scene& scene_;
   const World& world_;
+  Textures textures_;
   bool opaque_;
 };
 

@@ -48,9 +48,9 @@ void Media::remove(std::uint32_t material) {
 
 double Whitted::ior(std::uint32_t material) const { return material == none ? 1 : surfaces_.material(material).ior; }
 
-Radiance Whitted::trace(const Ray& camera, ReferenceCounts& counts) const {
+Radiance Whitted::trace(const Ray& camera, double width, double spread, ReferenceCounts& counts) const {
   Work work{{}, {}, counts};
-  work.rays.push_back({camera, glm::dvec3(1), 1, 0, primary, {}});
+  work.rays.push_back({camera, glm::dvec3(1), 1, 0, primary, {}, width, spread});
   while (!work.rays.empty()) {
     const Pending ray = work.rays.back();
     work.rays.pop_back();
@@ -72,8 +72,9 @@ Radiance Whitted::trace(const Ray& camera, ReferenceCounts& counts) const {
 }
 
 void Whitted::shade(const Pending& ray, const Hit& hit, Work& work) const {
-  const Surface s = surfaces_.at(hit, ray.ray.direction);
   Pending here = ray;
+  here.width = ray.width + ray.spread * hit.t;
+  const Surface s = surfaces_.at(hit, ray.ray.direction, here.width);
   here.weight *= absorbed(ray, s, hit.t);
   const glm::dvec3 weight = here.weight * s.alpha;
   work.sum.alpha += ray.coverage * s.alpha;
@@ -175,8 +176,10 @@ void Whitted::transmit(const Surface& s, const glm::dvec3& weight, double mirror
   if (!(f < 1)) return;
   glm::dvec3 way = d;
   if (s.volume) {
-    if (!bend(d, n, n1 / n2, way)) return;
-    if (glm::dot(way, s.geometric) >= 0 && !bend(d, s.geometric, n1 / n2, way)) return;
+    const double eta = n1 / n2;
+    if (!bend(d, n, eta, way)) return;
+    if (glm::dot(way, s.geometric) >= 0 && !bend(d, s.geometric, eta, way)) return;
+    through.spread = eta * parent.spread + (glm::dot(way, n) - eta * glm::dot(d, n)) * s.curvature * parent.width;
   }
   through.weight = weight * s.base * (s.transmission * (1 - s.metallic) * (1 - f));
   through.coverage = 0;
@@ -189,6 +192,7 @@ void Whitted::reflect(const Surface& s, const glm::dvec3& weight, const Pending&
   child.weight = weight;
   child.coverage = 0;
   child.kind = reflection;
+  child.spread += 2 * s.curvature * parent.width;
   glm::dvec3 way = glm::reflect(parent.ray.direction, s.normal);
   if (!(glm::dot(way, s.geometric) > 0)) way = glm::reflect(parent.ray.direction, s.geometric);
   go_on(s, glm::normalize(way), child, work);

@@ -36,7 +36,8 @@ class Whitted {
         environment_(environment),
         settings_(settings) {}
 
-  [[nodiscard]] Radiance trace(const Ray& camera, ReferenceCounts& counts) const;
+  /// `width`, `spread`: of the camera ray's cone, at its origin and a unit of t further.
+  [[nodiscard]] Radiance trace(const Ray& camera, double width, double spread, ReferenceCounts& counts) const;
 
  private:
   struct Pending {
@@ -45,6 +46,7 @@ class Whitted {
     double coverage = 0;
     std::uint32_t generation = 0, kind = 0;
     Media media;
+    double width = 0, spread = 0;  // of the ray's cone: at its origin, and what a unit of t adds
   };
   struct Work {
     Radiance sum;

@@ -6,8 +6,9 @@
 namespace sheaf {
 
 Generate::Generate(const Device& device, const Plan& plan, const Features& features, bool counted) : plan_(plan) {
-  const SpecConstant raster{1, plan.raster};
-  primary_ = Kernel(device, "generate_primary", {&raster, 1});
+  const std::array first{SpecConstant{1, plan.raster}, SpecConstant{2, plan.adaptive},
+                         SpecConstant{9, features.textured}};
+  primary_ = Kernel(device, "generate_primary", first);
   const SpecConstant one{0, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
   const std::array constants{SpecConstant{1, plan.shadows},     SpecConstant{2, plan.reflections},
@@ -17,12 +18,16 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
   generate_ = Kernel(device, "generate", constants);
 }
 
-void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels) const {
+void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_t rays) const {
   recorder.stage("generate");
   memory.reflection[1].bind(recorder);
   if (memory.visibility) recorder.bind(ROLE_VISIBILITY, memory.visibility);
+  if (memory.active_pixels) {
+    recorder.bind(ROLE_ACTIVE_PIXELS, memory.active_pixels);
+    recorder.bind(ROLE_SAMPLE_PLACES, memory.sample_places);
+  }
   const std::uint32_t unused = 0;
-  recorder.dispatch(primary_, unused, (pixels + gpu::GROUP - 1) / gpu::GROUP);
+  recorder.dispatch(primary_, unused, (rays + gpu::GROUP - 1) / gpu::GROUP);
 }
 
 void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary,

@@ -12,7 +12,7 @@ class Generate {
   Generate(const Device& device, const Plan& plan, const Features& features, bool counted);
 
   /// The camera's rays into memory.reflection[1].
-  void primary(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels) const;
+  void primary(Recorder& recorder, const RayMemory& memory, std::uint32_t rays) const;
   /// Shades the hits of the lists `from` (0 or 1; the camera's where `is_primary`) and makes the rays that follow.
   void secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary, bool last) const;
 

@@ -167,14 +167,16 @@ def test_nothing_to_see(sheaf, scene):
         assert "warning" in run.stderr
 
 
-def test_samples_follow_their_pattern(sheaf):
-    """Four samples at x offsets 1/8, 5/8, 3/8, 7/8: the edge of the square at 0.3 of a pixel covers one of four."""
-    rgba = sheaf.render("unlit", "--spp", 4, size="47x24").frame().rgba
+@pytest.mark.parametrize("spp", [4, 16, 64])
+def test_samples_are_one_a_stratum(sheaf, spp):
+    """An upright edge through a box-filtered pixel: samples have one place in each of spp columns, so they miss its share by less
+    than one of them; and each counts alike."""
+    rgba = sheaf.render("unlit", "--spp", spp, "--filter", "box", size="47x24").frame().rgba.astype(float)
     aspect = 47 / 24
     edge = (1 / aspect + 1) / 2 * 47  # x = 1 in pixels from the left
-    offsets = np.array((0.125, 0.625, 0.375, 0.875))
-    for column in range(40):
-        covered = ((column + offsets > 47 - edge) & (column + offsets < edge)).mean()
-        close(rgba[:, column, 3], covered, absolute=0)
-        close(rgba[:, column, :3], np.array((0.25, 0.5, 0.75)) * covered, absolute=0)
+    for column in range(47):
+        covered = np.clip(min(column + 1, edge) - max(column, 47 - edge), 0, 1)
+        assert np.abs(rgba[:, column, 3] - covered).max() < 1 / spp, column
+        assert np.allclose(rgba[:, column, 3] * spp, np.round(rgba[:, column, 3] * spp))
+        close(rgba[:, column, :3], np.array((0.25, 0.5, 0.75)) * rgba[:, column, 3:], absolute=0)
 

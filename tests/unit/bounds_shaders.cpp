@@ -48,7 +48,8 @@ Node node_over(const Node* below, int count) {
     const Node& n = below[k];
     const float distance = length(n.centre - node.centre);
     node.radius =
-        std::max(node.radius, distance > 0.0F || n.radius > 0.0F ? (distance + n.radius) * (1.0F + PAD) : 0.0F);
+        std::max(node.radius,
+                 n.centre != node.centre || n.radius > 0.0F ? (distance + n.radius) * (1.0F + PAD) + gl::LEAST : 0.0F);
     angle = std::max(angle, gl::angle_between(node.axis, n.axis) + n.angle);
   }
   node.angle = angle * (1.0F + PAD) + PAD;

@@ -329,13 +329,12 @@ Real aspect_of(const Shot& shot) {
   return longest * longest / glm::length(glm::cross(b - a, c - a));
 }
 
-// Needles are counted apart: their barycentric weights, and with them t, err by the aspect times what the derivation
-// beside offset_origin allows for, so a few rays do meet the needle that they leave. A needle is as wide as its error
-// there.
+// Needles too (aspects to 1e8 and past): their weights would err by the aspect times what the derivation beside
+// offset_origin allows for, were it not for exact_where_ill_conditioned.
 TEST(Bounds, NoRayMeetsWhereItStarts) {
   // A normal's squares are fourth powers of a triangle's sides, which here are down to 1e-4 of the size.
   Search search("offset of an origin (in units of the least that would do)", -3, 9);
-  std::size_t needles = 0, meeting_needles = 0;
+  std::size_t needles = 0;
   over_decades(2500, [&](Dice& dice, int decade, Real size) {
     const Shot shot = random_shot(dice, size, false);
     const auto hit = shader::intersect(shot.origin, shot.direction, shot.corner, shot.box_pad);
@@ -351,12 +350,11 @@ TEST(Bounds, NoRayMeetsWhereItStarts) {
                           [&](const vec3& way) { return shader::intersect(from, way, shot.corner, shot.box_pad).hit; });
     };
     const bool good = glm::dot(Vec(origin) - Vec(shot.corner[0]), normal) > 0 && is_free(origin);
+    search.add(decade, good);
     if (aspect > 100) {
       needles += search.counts(decade) ? 1 : 0;
-      meeting_needles += search.counts(decade) && !good ? 1 : 0;
       return;
     }
-    search.add(decade, good);
     const vec3 point =
         shot.corner[0] * hit.barycentric.x + shot.corner[1] * hit.barycentric.y + shot.corner[2] * hit.barycentric.z;
     Real share = 1;
@@ -364,10 +362,7 @@ TEST(Bounds, NoRayMeetsWhereItStarts) {
     search.looseness(decade, 1 / share);
   });
   search.report();
-  std::printf("needles (aspect above 100): %zu of %zu meet themselves in one of 24 directions\n", meeting_needles,
-              needles);
-  EXPECT_LT(meeting_needles, needles / 4);
-  RecordProperty("needles_meeting_themselves", static_cast<int>(meeting_needles));
+  EXPECT_GT(needles, 1000U);
 }
 
 }  // namespace

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// What a finished tile leaves on the host: pixels, layers, counts.
+#include <algorithm>
+#include <cmath>
+
+#include "frame/renderer.hpp"
+#include "stages/sort.hpp"
+
+namespace sheaf {
+namespace {
+
+// Root first; trees of different heights agree at the bottom.
+void add_levels(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& more) {
+  if (sum.size() < more.size()) sum.insert(sum.begin(), more.size() - sum.size(), 0);
+  for (std::size_t below = 1; below <= more.size(); ++below) sum[sum.size() - below] += more[more.size() - below];
+}
+
+}  // namespace
+
+void Renderer::collect_generations(RenderedFrame& out) {
+  const auto words = memory_.records_readback.view<std::uint32_t>();
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const auto* counters = &words[r * gpu::COUNT_WORDS];
+    const auto [generation, kind] = records_[r];
+    if (counters[gpu::COUNT_RAYS + kind] == 0) continue;
+    auto found =
+        std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
+          return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
+        });
+    if (found == out.stats.generations.end()) {
+      out.stats.generations.push_back({});
+      found = std::prev(out.stats.generations.end());
+      found->index = generation;
+      found->kind = static_cast<RayKind>(kind);
+      found->sort_reason = plan_.sorts ? "key changes in less than one ray of sixteen" : "strategy or --sort off";
+    }
+    found->rays += counters[gpu::COUNT_RAYS + kind];
+    add_levels(found->pairs_per_level, record_pairs_[r]);
+    if (!plan_.sorts || kind == gpu::KIND_PRIMARY) continue;
+    const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
+    found->key_bits = layout.bits();
+    found->chunks += counters[gpu::COUNT_CHUNKS];
+    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE];
+    found->tight += counters[gpu::COUNT_TIGHT];
+    if (counters[gpu::COUNT_SORT] != 0) {
+      found->sorted = true;
+      found->sort_reason =
+          settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
+    }
+  }
+}
+
+void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
+  const auto pixels = memory_.readback.view<float>();
+  for (std::uint32_t y = 0; y < tile.height; ++y)
+    std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(y) * tile.width * 4, std::size_t{tile.width} * 4,
+                out.layers.rgba.begin() + (static_cast<std::ptrdiff_t>(tile.y + y) * settings_.width + tile.x) * 4);
+  store_counts(tile, out);
+}
+
+void Renderer::store_round(const Tile& tile) {
+  const auto sums = memory_.accumulation_readback.view<std::uint64_t>();
+  for (std::uint32_t i = 0; i < tile.pixels(); ++i) {
+    const std::size_t pixel = std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width;
+    if (!adaptive_->active(pixel)) continue;
+    glm::dvec4 sum(0);
+    for (int c = 0; c < 4; ++c)
+      sum[c] = std::ldexp(static_cast<double>(sums[std::size_t{i} * 4 + static_cast<std::size_t>(c)]), -32);
+    adaptive_->add(pixel, sum);
+  }
+}
+
+void Renderer::store_adaptive(RenderedFrame& out) const {
+  for (std::size_t pixel = 0; pixel < out.layers.rgba.size() / 4; ++pixel) {
+    const glm::dvec4 mean = adaptive_->mean(pixel);
+    for (int c = 0; c < 3; ++c) out.layers.rgba[pixel * 4 + static_cast<std::size_t>(c)] = static_cast<float>(mean[c]);
+    out.layers.rgba[pixel * 4 + 3] = std::min(static_cast<float>(mean.a), 1.0F);
+  }
+}
+
+void Renderer::store_counts(const Tile& tile, RenderedFrame& out) {
+  if (layers_ && (!adaptive_ || adaptive_->first_sample() == 0))
+    Layers::store(memory_, tile, scene_.origin(), out.layers);
+  if (!out.layers.tests.empty()) {
+    const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
+    for (std::uint32_t i = 0; i < tile.pixels(); ++i)
+      out.layers.tests[std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width] +=
+          static_cast<float>(tests[i]);
+  }
+  collect_stats(out);
+  collect_generations(out);
+}
+
+void Renderer::collect_stats(RenderedFrame& out) {
+  const auto stats = memory_.stats_readback.view<std::uint64_t>();
+  for (std::uint32_t kind = 0; kind < ray_kinds; ++kind) {
+    const auto* of = &stats[kind * gpu::STAT_FIELDS];
+    out.stats.rays[kind] += of[gpu::STAT_RAYS];
+    out.stats.hits[kind] += of[gpu::STAT_HITS];
+    out.stats.node_object[kind] += of[gpu::STAT_NODE_OBJECT];
+    out.stats.ray_box[kind] += of[gpu::STAT_RAY_BOX];
+    out.stats.ray_triangle[kind] += of[gpu::STAT_RAY_TRIANGLE];
+    auto& levels = out.stats.node_object_by_level[kind];  // root last: level 0 are the rays
+    for (std::uint32_t l = 0; l < gpu::MAX_LEVELS; ++l) {
+      if (of[gpu::STAT_LEVELS + l] == 0) continue;
+      if (levels.size() <= l) levels.resize(l + 1);
+      levels[l] += of[gpu::STAT_LEVELS + l];
+    }
+  }
+}
+
+}  // namespace sheaf
