@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The service's page in a real browser: Debian's chromium, driven by Playwright. Skipped where either is missing."""
+"""The service's page in a real browser: Debian's chromium, driven by Playwright. Skipped where either is missing,
+unless SHEAF_REQUIRE_TOOLS=1 says that they are there: then that is a failure."""
 
 from __future__ import annotations
 
@@ -20,11 +21,18 @@ BUILD = pathlib.Path(os.environ.get("SHEAF_BUILD", HERE / "../../build")).resolv
 SCENES = HERE.parent / "scenes"
 PATIENCE_MS = 60_000
 
-playwright = pytest.importorskip("playwright.sync_api")
+REQUIRED = os.environ.get("SHEAF_REQUIRE_TOOLS") == "1"
+
+if REQUIRED:
+    import playwright.sync_api as playwright
+else:
+    playwright = pytest.importorskip("playwright.sync_api")
 
 
 def chromium() -> str:
     found = os.environ.get("SHEAF_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+    if not found and REQUIRED:
+        pytest.fail("no chromium")
     return found or pytest.skip("no chromium")
 
 

@@ -13,7 +13,6 @@ SCHEMATHESIS = pathlib.Path(sys.executable).with_name("schemathesis")
 EXAMPLES = os.environ.get("SHEAF_CONTRACT_EXAMPLES", "10")  # of each operation; 200 for a long run
 
 
-@pytest.mark.skipif(not SCHEMATHESIS.is_file(), reason="schemathesis is not installed")
 @pytest.mark.parametrize(
     "choice",
     [
