@@ -44,8 +44,9 @@ function decades(values) {
 function scatter(all, front) {
   const shown = all.filter((point) => point.rmse > 0);
   const width = Math.max(300, Math.min(760, $("report").clientWidth - 32));
-  const [high, left, right, top, bottom] = [Math.round(width * 0.6), 56, 12, 12, 40];
+  const [high, left, right, top, bottom] = [Math.round(width * 0.6), 56, 26, 12, 40];
   const chart = svg("svg", { class: "chart", viewBox: `0 0 ${width} ${high}`, role: "img", "aria-label": "Error against time, both logarithmic" });
+  chart.style.maxWidth = `${width}px`;
   if (!shown.length) return element("p", { className: "facts", textContent: "Every picture equals the reference." });
   const [times, errors] = [decades(shown.map((point) => point.time)), decades(shown.map((point) => point.rmse))];
   const across = (value) => left + ((Math.log10(value) - times[0]) / (times.at(-1) - times[0])) * (width - left - right);
@@ -53,7 +54,7 @@ function scatter(all, front) {
   for (const power of times) {
     const x = across(10 ** power);
     chart.append(svg("line", { x1: x, x2: x, y1: top, y2: high - bottom, class: "grid" }),
-      svg("text", { x, y: high - bottom + 16, "text-anchor": "middle", class: "quiet" }, milliseconds(10 ** power)));
+      svg("text", { x, y: high - bottom + 16, "text-anchor": "middle", class: "quiet" }, power < 3 ? `${10 ** power} ms` : `${10 ** (power - 3)} s`));
   }
   for (const power of errors) {
     const y = down(10 ** power);

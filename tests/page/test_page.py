@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import json
 import pathlib
 import re
 from collections.abc import Callable
 
 import numpy as np
 import pytest
-from conftest import PATIENCE_MS, SCENES, playwright
+from conftest import PATIENCE_MS, SCENES, playwright, running
 
 import sheaf
 
@@ -220,3 +221,72 @@ def test_everything_has_a_name_and_is_reached_by_keyboard(visit: Visit, done: sh
         reached.append(page.evaluate("document.activeElement.id || document.activeElement.name"))
     for name in ("files", "frames", "size", "quality", "play", "scrub", "open", "compare"):
         assert name in reached, name
+
+
+def study(**more: object) -> dict:
+    """A report as `sheaf-client report` writes it, with what the page reads."""
+
+    def trial(label: str, milliseconds: float | None, rmse: float | None, front: bool, name: str | None = None) -> dict:
+        wall = milliseconds and {
+            "median": milliseconds,
+            "low": milliseconds,
+            "high": milliseconds,
+            "runs": [milliseconds],
+        }
+        error = rmse is not None and {"rmse": rmse, "worst": "inf"} or None
+        pareto = {"time": front, "tests": False}
+        return {"label": label, "name": name, "wall_ms": wall, "error": error, "pareto": pareto, "failure": None}
+
+    knobs = [
+        trial("spp 1", 12.0, 0.2, True, "draft"),
+        trial("spp 4", 40.0, 0.05, True, "production"),
+        trial("spp 4, depth 9", 90.0, 0.06, False),
+        trial("spp 16", 700.0, 0.0004, True, "exact"),
+        trial("equal", 900.0, 0.0, True),
+        trial("failed", None, None, False),
+    ]
+    scenes = [{"scene": "whitted", "knobs": knobs, "strategies": []}, {"scene": "empty", "knobs": [], "strategies": []}]
+    return {
+        "schema": 1,
+        "made": "2031-02-03",
+        "device": {"name": "a device"},
+        "options": {"size": "64x36"},
+        "scenes": scenes,
+    }
+
+
+def check_plot(page) -> None:
+    expect(page.locator("#report")).to_be_visible()
+    assert page.locator("#report-scene option").all_text_contents() == ["whitted"]
+    expect(page.locator("#report-made")).to_have_text("a device · 64x36 · 2031-02-03")
+    expect(page.locator("#report-plot circle")).to_have_count(4)  # an error of 0 has no place on a logarithmic axis
+    across = page.evaluate(
+        """[...document.querySelectorAll("#report-plot circle")]
+          .map((dot) => [+dot.getAttribute("cx"), +dot.getAttribute("cy")])"""
+    )
+    # Logarithmic both ways: twice the share is twice the distance.
+    (x1, y1), (x4, y4), _, (x16, y16) = across
+    assert (x16 - x1) / (x4 - x1) == pytest.approx(np.log(700 / 12) / np.log(40 / 12), rel=1e-3)
+    assert (y16 - y1) / (y4 - y1) == pytest.approx(np.log(0.2 / 0.0004) / np.log(0.2 / 0.05), rel=1e-3)
+    rows = page.locator("#report-plot tbody tr").all_text_contents()
+    assert len(rows) == 4 and rows[0].startswith("draft: spp 1") and rows[3].endswith("0.00")
+
+
+def test_a_report_is_shown_when_it_is_dropped(visit: Visit, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "report.json").write_text(json.dumps(study()))
+    page = visit()
+    expect(page.locator("#report")).not_to_be_visible()
+    page.set_input_files("#files", tmp_path / "report.json")
+    check_plot(page)
+    expect(page.locator("#submit")).to_be_disabled()  # it is no scene, and no complaint either
+    expect(page.locator("#new-error")).not_to_be_visible()
+    page.set_input_files("#files", [SCENES / "cornell.glb", tmp_path / "report.json"])
+    expect(page.locator("#submit")).to_be_enabled()
+    assert "report.json" not in page.locator("#drop-text").text_content()
+
+
+def test_the_services_own_report(visit: Visit, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "report.json").write_text(json.dumps(study()))
+    with running(tmp_path / "data", "--report", str(tmp_path / "report.json")) as address:
+        page = visit(at=address)
+        check_plot(page)
