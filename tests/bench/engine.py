@@ -58,7 +58,7 @@ class Run:
     seconds: float
     peak_mib: float  # of the process; on a CPU device that includes what is on the device
     others: float  # share of the machine's time that other programs took meanwhile
-    cpu: float | None  # ms of CPU time a frame, all cores together: what other programs disturb least
+    cpu: float | None  # ms of CPU time a frame, all cores together; None where the device is no CPU, or frames too few
     frames: list[Frame] = field(default_factory=list)
 
 
@@ -89,6 +89,16 @@ class Engine:
 
     def __init__(self, build: Path, work: Path, device: str | None) -> None:
         self.program, self.work, self.device = build / "sheaf", work, device
+        self.on_cpu = self._kind() == "cpu"
+
+    def _kind(self) -> str:
+        """Of the device that will be used: cpu, or a kind of GPU."""
+        done = subprocess.run([self.program, "devices", "--json"], capture_output=True, text=True, check=True)
+        wanted = self.device
+        for device in json.loads(done.stdout):
+            if wanted is None or wanted == str(device["index"]) or wanted in device["name"]:
+                return device["kind"]
+        raise RuntimeError(f"no device {wanted}")
 
     def render(self, scene: Path, options: list[object], frames: str, seconds: float = 1800) -> Run:
         """The pictures are not kept."""
@@ -109,7 +119,7 @@ class Engine:
         if code:
             raise RuntimeError(f"{' '.join(map(str, command))}\nexit {code}\n{told.read_text()[-2000:]}")
         others = load.share(usage.ru_utime + usage.ru_stime)
-        run = Run(json.loads(stats.read_text()), taken, usage.ru_maxrss / 1024, others, cpu)
+        run = Run(json.loads(stats.read_text()), taken, usage.ru_maxrss / 1024, others, cpu if self.on_cpu else None)
         rendered = [f for f in run.stats["frames"] if not f["repeated"]]
         run.frames = [Frame(f["wall_ms"], f["stages"]) for f in rendered[1:] or rendered]
         return run

@@ -17,6 +17,7 @@ from passes import passing_triangles
 from engine import Engine, Run, TookTooLongError
 
 PROBE_SIZE = (160, 90)
+ALWAYS = ("auto", "hybrid", "bvh", "rayquery")  # measured however long they take
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Settings:
     rounds: int
     patience: float
     strategies: tuple[str, ...]
-    frames: int = 4  # of a run that count; one more warms up
+    frames: int = 3  # of a run that count; one more warms up
 
 
 def size_text(size: tuple[int, int]) -> str:
@@ -149,20 +150,26 @@ def measure(
     engine: Engine, embree_program: Path | None, scene: Scene, settings: Settings, work: Path
 ) -> dict[str, Any]:
     """Checked, probed, then measured in turn: each contender, and again; half as often more where others disturbed."""
-    dump, dumped = dump_frames(engine, scene, settings, work)
-    left_out = {}
+    left_out: dict[str, str] = {}
+    dump, dumped = work / "dump", None
+    if embree_program:
+        try:
+            dump, dumped = dump_frames(engine, scene, settings, work)
+        except RuntimeError as error:
+            left_out["embree"] = f"no rays were dumped: {str(error).splitlines()[-1]}"
+    load_seconds = dumped.seconds if dumped else settings.patience
     strategies = []
     for strategy in settings.strategies:
-        reason = None if strategy in ("auto", "bvh") else probe(engine, scene, strategy, settings, dumped.seconds)
+        reason = None if strategy in ALWAYS else probe(engine, scene, strategy, settings, load_seconds)
         if reason:
             left_out[strategy] = reason
         else:
             strategies.append(strategy)
-    embree = start_embree(embree_program, scene, dump) if embree_program else None
+    embree = start_embree(embree_program, scene, dump) if embree_program and dumped else None
     runs: dict[str, list[Run]] = {strategy: [] for strategy in strategies}
     rounds: list[Round] = []
     try:
-        for _ in range(settings.rounds + (settings.rounds + 1) // 2):
+        for _ in range(settings.rounds + settings.rounds // 2):
             if embree and needs_more(rounds, settings.rounds * settings.frames):
                 rounds += [embree.round() for _ in range(settings.frames)]
             for strategy in strategies:
@@ -177,9 +184,10 @@ def measure(
                         "off",
                     ]
                     runs[strategy].append(engine.render(scene.path, options, f"0-{settings.frames}"))
+        stats = (dumped or runs[strategies[0]][-1]).stats
         result: dict[str, Any] = {
-            "scene": dumped.stats["scene"],
-            "rays": dumped.stats["frames"][-1]["rays"],
+            "scene": stats["scene"],
+            "rays": stats["frames"][-1]["rays"],
             "left_out": left_out,
             "engine": {s: engine_result(runs[s], settings.rounds) for s in strategies},
         }
