@@ -61,8 +61,8 @@ std::string quality_help() {
   std::ostringstream text;
   text << "named settings, which others given beside it change:";
   for (const auto& q : qualities)
-    text << (&q == qualities.data() ? " " : "; ") << q.name << " = --spp " << q.samples << " --depth " << q.depth
-         << " --cutoff " << q.cutoff;
+    text << (&q == qualities.data() ? " " : "; ") << q.name << " = --spp " << text_of(q.samples) << " --depth "
+         << q.depth << " --cutoff " << q.cutoff;
   return text.str();
 }
 
@@ -121,7 +121,7 @@ void resolve_options(RenderOptions& o) {
   RenderSettings& s = o.settings;
   parse_size(o.size, s);
   const Quality& quality = parse_quality(o.quality);
-  parse_samples(o.spp.value_or(quality.samples), s);
+  s.samples = o.spp ? parse_samples(*o.spp) : quality.samples;
   s.depth = o.depth.value_or(quality.depth);
   s.cutoff = o.cutoff.value_or(quality.cutoff);
   s.filter = parse_filter(o.filter);

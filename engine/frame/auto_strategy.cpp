@@ -28,15 +28,15 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
   constexpr std::uint64_t probe_pixels = 96 * 1024;  // enough bundles to tell, few enough to cost little
   const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
   Choice choice;
-  if (pixels * settings.samples <= probe_pixels) {
+  if (pixels * settings.samples.most <= probe_pixels) {
     choice.strategy = Strategy::bvh;
-    choice.because = "a frame of " + std::to_string(pixels * settings.samples) + " samples is too small to probe for";
+    choice.because =
+        "a frame of " + std::to_string(pixels * settings.samples.most) + " samples is too small to probe for";
     return choice;
   }
   RenderSettings small = settings;
-  small.samples = 1;
-  if (small.adaptive_error) small.primary = PrimaryMethod::trace;
-  small.adaptive_error.reset();
+  if (small.samples.error) small.primary = PrimaryMethod::trace;
+  small.samples = {};
   small.counted = false;
   small.layers = {};
   FrameRequest band = first;

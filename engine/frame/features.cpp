@@ -101,7 +101,7 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   plan.refractions = features.translucent() && settings.depth > 0;
   if (!plan.refractions) leave("refraction", settings.depth == 0 ? "--depth 0" : "no transmissive or blended material");
   if (!features.volumes) leave("media", "no volume that refracts and absorbs");
-  plan.adaptive = settings.adaptive_error.has_value();
+  plan.adaptive = settings.samples.error.has_value();
   plan.raster = settings.primary == PrimaryMethod::raster && !plan.adaptive;
   if (!plan.raster)
     leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels" : "--primary trace");

@@ -24,13 +24,13 @@ glm::dmat4 world_to_ndc(const CameraView& camera, double aspect) {
 
 nlohmann::ordered_json settings_json(const RenderSettings& s) {
   nlohmann::ordered_json json{{"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
-                              {"spp", s.samples},
+                              {"spp", s.samples.most},
                               {"filter", name_of(s.filter)},
                               {"depth", s.depth},
                               {"cutoff", s.cutoff},
                               {"primary", s.primary == PrimaryMethod::raster ? "raster" : "trace"},
                               {"opaque", s.opaque}};
-  if (s.adaptive_error) json["spp"] = samples_text(s);
+  if (s.samples.error) json["spp"] = text_of(s.samples);
   if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};
   return json;
 }

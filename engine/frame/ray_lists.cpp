@@ -80,7 +80,7 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   if (plan.adaptive) {
     m.accumulation_readback = Buffer(device, "accumulation", pixels * 32, Kind::readback);
     m.active_pixels = Buffer(device, "active pixels", pixels * 4, Kind::upload);
-    m.sample_places = Buffer(device, "sample places", (std::uint64_t{settings.samples} + 1) * 8, Kind::upload);
+    m.sample_places = Buffer(device, "sample places", (std::uint64_t{settings.samples.most} + 1) * 8, Kind::upload);
   }
   m.frame = Buffer(device, "frame", sizeof(gpu::Frame));
   m.stats = Buffer(device, "stats", gpu::STAT_WORDS * 8);

@@ -18,8 +18,8 @@ class ReferenceFrames final : public FrameSource {
     ReferenceSettings s;
     s.width = settings_.width;
     s.height = settings_.height;
-    s.spp = settings_.samples;
-    s.adaptive_error = settings_.adaptive_error;
+    s.spp = settings_.samples.most;
+    s.adaptive_error = settings_.samples.error;
     s.filter = settings_.filter;
     s.depth = settings_.depth;
     s.cutoff = settings_.cutoff;

@@ -29,7 +29,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Features& fea
       compact_(device),
       shade_(device, features_, settings.counted),
       resolve_(device),
-      places_(pixel_samples(settings.filter, settings.samples)) {
+      places_(pixel_samples(settings.filter, settings.samples.most)) {
   places_.emplace_back(0.5);
   if (plan_.raster) raster_.emplace(device, features_);
   if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
@@ -68,7 +68,7 @@ void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Til
   f.batch_samples = batch.samples;
   // A sample stands for its share of the pixel.
   const double share =
-      2 * half_y / settings_.height / std::sqrt(adaptive_ ? 2.0 * AdaptivePixels::first_round : settings_.samples);
+      2 * half_y / settings_.height / std::sqrt(adaptive_ ? 2.0 * AdaptivePixels::first_round : settings_.samples.most);
   (camera.orthographic ? f.cone_width : f.cone_spread) = static_cast<float>(share);
   f.lights = scene_.lights();
   f.triangles = scene_.triangles();
@@ -105,8 +105,8 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
     dump_->begin(request.number);
     list_dump_->triangles(recorder_, *dump_);
   }
-  if (settings_.adaptive_error)
-    adaptive_.emplace(settings_.width, settings_.height, *settings_.adaptive_error, settings_.samples);
+  if (settings_.samples.error)
+    adaptive_.emplace(settings_.width, settings_.height, *settings_.samples.error, settings_.samples.most);
   do render_tiles(request, whole, out);
   while (adaptive_ && adaptive_->next_round());
   if (adaptive_) store_adaptive(out);
@@ -149,12 +149,12 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   begin_tile(tile);
   if (adaptive_) return render_round(request, tile, out);
   if (layers_) render_layers(request, tile);
-  for (std::uint32_t sample = 0; sample < settings_.samples; ++sample) {
+  for (std::uint32_t sample = 0; sample < settings_.samples.most; ++sample) {
     if (render_batch(request, {sample, 1, tile.pixels()}, tile)) continue;
     if (dump_ != nullptr) dump_->rewind();
     return false;
   }
-  resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples);
+  resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples.most);
   finish_tile(tile);
   store_tile(tile, out);
   return true;
@@ -201,8 +201,8 @@ std::uint32_t Renderer::list_active_pixels(const Tile& tile) {
 
 // The layers are what the rays through the pixels' centres see.
 void Renderer::render_layers(const FrameRequest& request, const Tile& tile) {
-  if (settings_.samples == 1) return;  // then the one sample is that ray
-  camera_hits(request, {settings_.samples, 1, tile.pixels()}, tile);
+  if (settings_.samples.most == 1) return;  // then the one sample is that ray
+  camera_hits(request, {settings_.samples.most, 1, tile.pixels()}, tile);
   layers_->record(recorder_, memory_, tile.pixels());
   recorder_.fill(memory_.stats, 0);  // not rays of the picture
   if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
@@ -239,7 +239,7 @@ void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, cons
 bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile) {
   camera_hits(request, batch, tile);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
-  if (layers_ && settings_.samples == 1) layers_->record(recorder_, memory_, tile.pixels());
+  if (layers_ && settings_.samples.most == 1) layers_->record(recorder_, memory_, tile.pixels());
   generate_.secondary(recorder_, memory_, 0, true, settings_.depth == 0);
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();

@@ -2,10 +2,8 @@
 #include "frame/settings.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
@@ -65,34 +63,13 @@ const char* name_of(PixelFilter filter) {
 
 const Quality& parse_quality(const std::string& name) {
   if (name.empty()) return default_quality;
-  for (const auto& quality : qualities)
-    if (name == quality.name) return quality;
+  if (const Quality* quality = find_quality(name)) return *quality;
   throw Error(ErrorKind::usage, "--quality " + name + ": there is draft, production, exact");
 }
 
-void parse_samples(const std::string& text, RenderSettings& settings) {
-  const auto number = [&](const std::string& part, auto& value) {
-    const auto [end, failed] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (failed != std::errc() || end != part.data() + part.size())
-      throw Error(ErrorKind::usage, "--spp " + text + ": must be a whole number or adaptive:ERROR[:MOST]");
-  };
-  settings.adaptive_error.reset();
-  constexpr std::string_view adaptive = "adaptive:";
-  if (!text.starts_with(adaptive)) return number(text, settings.samples);
-  const std::string rest = text.substr(adaptive.size());
-  const auto colon = rest.find(':');
-  double error = 0;
-  number(rest.substr(0, colon), error);
-  settings.samples = 256;
-  if (colon != std::string::npos) number(rest.substr(colon + 1), settings.samples);
-  settings.adaptive_error = error;
-}
-
-std::string samples_text(const RenderSettings& settings) {
-  if (!settings.adaptive_error) return std::to_string(settings.samples);
-  std::ostringstream text;
-  text << "adaptive:" << *settings.adaptive_error << ":" << settings.samples;
-  return text.str();
+SampleCount parse_samples(const std::string& text) {
+  if (const auto samples = parse_sample_count(text)) return *samples;
+  throw Error(ErrorKind::usage, "--spp " + text + ": must be a whole number or adaptive:ERROR[:MOST]");
 }
 
 LayerSet parse_layers(const std::string& list) {
@@ -120,10 +97,10 @@ LayerSet parse_layers(const std::string& list) {
 void check_settings(const RenderSettings& settings) {
   check_range("size (width)", settings.width, 1U, 16384U);
   check_range("size (height)", settings.height, 1U, 16384U);
-  check_range("spp", settings.samples, 1U, 65536U);
-  if (settings.adaptive_error) {
-    check_range("spp adaptive: error", *settings.adaptive_error, 1e-5, 1.0);
-    check_range("spp adaptive: most samples", settings.samples, 2 * AdaptivePixels::first_round, 65536U);
+  check_range("spp", settings.samples.most, 1U, 65536U);
+  if (settings.samples.error) {
+    check_range("spp adaptive: error", *settings.samples.error, 1e-5, 1.0);
+    check_range("spp adaptive: most samples", settings.samples.most, 2 * AdaptivePixels::first_round, 65536U);
   }
   check_range("depth", settings.depth, 0U, 4096U);
   check_range("cutoff", settings.cutoff, 0.0F, 1.0F);

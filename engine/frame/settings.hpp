@@ -2,7 +2,6 @@
 // Everything that decides a picture besides scene and camera, and what else to report about it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "sampling/pixel_samples.hpp"
+#include "sampling/quality.hpp"
 
 namespace sheaf {
 
@@ -29,8 +29,7 @@ struct LayerSet {  // --aov
 
 struct RenderSettings {
   std::uint32_t width = 1280, height = 720;
-  std::uint32_t samples = 1;             // a pixel; where they are adaptive, the most
-  std::optional<double> adaptive_error;  // --spp adaptive:ERROR, see AdaptivePixels
+  SampleCount samples;
   PixelFilter filter = PixelFilter::gaussian;
   std::uint32_t depth = 4;
   float cutoff = 0.002F;
@@ -44,26 +43,8 @@ struct RenderSettings {
   bool counted = true;
 };
 
-/// What --quality stands for: settings on the front of error against time, as `sheaf-client report` finds it.
-struct Quality {
-  const char* name;
-  const char* samples;  // as --spp takes them
-  std::uint32_t depth;
-  float cutoff;
-};
-
-inline constexpr std::array<Quality, 3> qualities{{
-    {"draft", "1", 2, 0.02F},
-    {"production", "adaptive:0.02:64", 6, 0.002F},
-    {"exact", "adaptive:0.002:1024", 32, 0.0F},
-}};
-inline constexpr Quality default_quality{"", "1", 4, 0.002F};
-
+[[nodiscard]] SampleCount parse_samples(const std::string& text);     // Error{usage}
 [[nodiscard]] const Quality& parse_quality(const std::string& name);  // Error{usage}; empty: the defaults
-
-/// "N", or "adaptive:ERROR" with an optional ":MOST". Throws Error{usage} or Error{input}.
-void parse_samples(const std::string& text, RenderSettings& settings);
-[[nodiscard]] std::string samples_text(const RenderSettings& settings);
 [[nodiscard]] PixelFilter parse_filter(const std::string& name);
 [[nodiscard]] const char* name_of(PixelFilter filter);
 

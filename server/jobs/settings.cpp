@@ -9,6 +9,7 @@
 #include "http/problem.hpp"
 #include "output/frame_names.hpp"
 #include "output/frame_range.hpp"
+#include "sampling/quality.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -69,6 +70,7 @@ constexpr char max_spp[] = "max-spp", max_depth[] = "max-depth", max_memory[] = 
 
 constexpr std::array strategies{"auto",     "hybrid", "crsh",  "rsh",      "frustum",
                                 "classify", "bvh",    "brute", "rayquery", "reference"};
+constexpr std::array filters{"box", "triangle", "gaussian"};
 constexpr std::array switches{"auto", "on", "off"};
 constexpr std::array primaries{"raster", "trace"};
 constexpr std::array compressions{"none", "rle", "zips", "zip", "piz", "dwaa"};
@@ -141,6 +143,27 @@ std::string bounded(const json& value, Context& context) {
   return std::to_string(number);
 }
 
+// The most samples of a pixel count against the limit.
+std::string spp(const json& value, Context& context) {
+  if (!value.is_string()) return bounded<&Limits::spp, max_spp>(value, context);
+  const std::string given = text(value, context);
+  const auto samples = parse_sample_count(given);
+  if (!samples || !samples->error || !(*samples->error >= 1e-5 && *samples->error <= 1) || samples->most < 8)
+    context.refuse(
+        "must be a whole number of at least 1 or \"adaptive:ERROR[:MOST]\", ERROR from 0.00001 to 1, MOST from 8");
+  context.bound(samples->most, max_spp, context.limits.spp, "asked for");
+  return given;
+}
+
+// What it stands for is held against the same limits.
+std::string quality(const json& value, Context& context) {
+  const Quality* found = value.is_string() ? find_quality(value.get<std::string>()) : nullptr;
+  if (found == nullptr) context.refuse("must be one of draft, production, exact");
+  context.bound(found->samples.most, max_spp, context.limits.spp, "samples a pixel");
+  context.bound(found->depth, max_depth, context.limits.depth, "generations");
+  return found->name;
+}
+
 std::string cutoff(const json& value, Context& context) {
   if (!value.is_number() || !(value.get<double>() >= 0 && value.get<double>() <= 1))
     context.refuse("must be a number from 0 to 1");
@@ -199,7 +222,9 @@ constexpr std::array table{Setting{"frames", frames},
                            Setting{"animation", name_or_index},
                            Setting{"camera-node", name_or_index},
                            Setting{"size", size},
-                           Setting{"spp", bounded<&Limits::spp, max_spp>},
+                           Setting{"quality", quality},
+                           Setting{"spp", spp},
+                           Setting{"filter", choice<filters>},
                            Setting{"depth", bounded<&Limits::depth, max_depth, 0>},
                            Setting{"cutoff", cutoff},
                            Setting{"strategy", choice<strategies>},

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The form for a new job: the files, what can be told about the scene before it is sent, and sending it.
 
-const QUALITIES = {
-  draft: { spp: 1, depth: 2, cutoff: 0.02 },
-  production: { spp: 4, depth: 6, cutoff: 0.002 },
-  exact: { spp: 16, depth: 12, cutoff: 0 },
-};
-
 let chosen = { scene: null, camera: null, beside: [] };
 
 /** Sorts files into the scene, a camera path, and what lies beside the scene; a report is shown. */
@@ -84,7 +78,7 @@ function bytes(count) {
 
 function settings() {
   const form = new FormData($("new"));
-  const wanted = { frames: form.get("frames").replace(/\s/g, ""), size: form.get("size"), ...QUALITIES[form.get("quality")] };
+  const wanted = { frames: form.get("frames").replace(/\s/g, ""), size: form.get("size"), quality: form.get("quality") };
   if (form.get("fps")) wanted.fps = Number(form.get("fps"));
   for (const name of ["animation", "camera-node"]) if (form.get(name)) wanted[name] = /^\d+$/.test(form.get(name)) ? Number(form.get(name)) : form.get(name);
   for (const name of ["strategy", "sort"]) if (form.get(name) !== "auto") wanted[name] = form.get(name);

@@ -12,6 +12,8 @@ from ._frames import frame_list
 
 Strategy = Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"]
 Switch = Literal["auto", "on", "off"]
+Quality = Literal["draft", "production", "exact"]
+Filter = Literal["box", "triangle", "gaussian"]
 Primary = Literal["raster", "trace"]
 Compression = Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
 
@@ -34,8 +36,12 @@ class RenderSettings(TypedDict, total=False):
     """A camera of the scene by node name or index; not together with a camera path."""
     size: str | tuple[int, int] | None
     """Width and height in pixels: `"640x360"` or `(640, 360)`."""
+    quality: Quality | None
+    """Named settings for samples, depth and cutoff; what is given beside it counts."""
     spp: int | str | None
-    """Samples a pixel."""
+    """Samples a pixel, or `"adaptive:ERROR"` or `"adaptive:ERROR:MOST"`: more where the error is."""
+    filter: Filter | None
+    """How samples make up a pixel."""
     depth: int | None
     """Generations of reflected and refracted rays."""
     cutoff: float | None

@@ -17,14 +17,14 @@ from .._files import write_whole
 from .._frames import frame_list, parse_frames
 from .._job import Job
 from .._names import FrameNames, default_pattern
-from .._settings import Compression, Primary, Strategy, Switch
+from .._settings import Compression, Filter, Primary, Quality, Strategy, Switch
 from ._connect import add_output, add_server, checked_name, connect
 from ._exit import UsageError
 from ._report import Report
 
 _NUMBERS = {"fps": str, "spp": str, "depth": int, "cutoff": float, "memory": int}
 _TEXTS = ("animation", "scene_name", "camera_node", "environment", "size", "aov", "device")
-_CHOICES = {"strategy": Strategy, "sort": Switch, "count": Switch, "primary": Primary, "compression": Compression}
+_CHOICES = {"quality": Quality, "filter": Filter, "strategy": Strategy, "sort": Switch, "count": Switch, "primary": Primary, "compression": Compression}
 
 
 def add(commands: Any) -> None:
