@@ -67,8 +67,8 @@ MEMBERS = {
     sheaf.Event: "data ends_job id type",
 }
 
-SETTINGS = """animation aov camera_node compression cutoff count depth device environment filter fps frames memory name opaque
-preview primary quality scene_name size sort spp strategy"""
+SETTINGS = """animation aov camera_node compression cutoff count depth device environment filter fps frames
+memory name opaque preview primary quality scene_name size sort spp strategy"""
 
 
 def test_exported_names() -> None:

@@ -24,7 +24,15 @@ from ._report import Report
 
 _NUMBERS = {"fps": str, "spp": str, "depth": int, "cutoff": float, "memory": int}
 _TEXTS = ("animation", "scene_name", "camera_node", "environment", "size", "aov", "device")
-_CHOICES = {"quality": Quality, "filter": Filter, "strategy": Strategy, "sort": Switch, "count": Switch, "primary": Primary, "compression": Compression}
+_CHOICES = {
+    "quality": Quality,
+    "filter": Filter,
+    "strategy": Strategy,
+    "sort": Switch,
+    "count": Switch,
+    "primary": Primary,
+    "compression": Compression,
+}
 
 
 def add(commands: Any) -> None:
