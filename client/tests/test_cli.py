@@ -57,7 +57,8 @@ def test_render_takes_all_options_of_sheaf_render(run: Callable[..., int], capsy
     assert run("render", "--help") == 0
     text = capsys.readouterr().out
     listed = """--out --camera --camera-node --frames --fps --animation --size --quality --spp --filter --depth --cutoff
-        --strategy --sort --primary --aov --compression --name --stats --device --memory --progress --resume --opaque --preview"""
+        --strategy --sort --primary --aov --compression --name --stats --device --memory --progress --resume
+        --opaque --preview"""
     for option in listed.split():
         assert option in text
 
