@@ -8,46 +8,13 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "vulkan/instance.hpp"
 
 namespace sheaf {
 namespace {
 
-std::atomic<std::uint64_t> validation_count{0};
-
-VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                                          VkDebugUtilsMessageTypeFlagsEXT,
-                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
-  if (severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT) {
-    validation_count.fetch_add(1);
-    std::fprintf(stderr, "vulkan validation: %s\n", data->pMessage);
-  }
-  return VK_FALSE;
-}
-
-bool validation_wanted() {
-  const char* value = std::getenv("SHEAF_VALIDATION");
-  return value != nullptr && *value != '\0' && std::strcmp(value, "0") != 0;
-}
-
 bool has_extension(const std::vector<vk::ExtensionProperties>& all, const char* name) {
   return std::any_of(all.begin(), all.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
-}
-
-vk::raii::Instance make_instance(const vk::raii::Context& context, bool validate) {
-  vk::ApplicationInfo application("sheaf", 1, "sheaf", 1, VK_API_VERSION_1_2);
-  std::vector<const char*> layers, extensions;
-  if (validate) {
-    layers.push_back("VK_LAYER_KHRONOS_validation");
-    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-  }
-  vk::InstanceCreateInfo info({}, &application, layers, extensions);
-  try {
-    return {context, info};
-  } catch (const vk::LayerNotPresentError&) {
-    throw Error(ErrorKind::device, "Vulkan: SHEAF_VALIDATION is set but the validation layer is not installed");
-  } catch (const vk::SystemError& error) {
-    throw Error(ErrorKind::device, std::string("Vulkan: no instance (is a driver installed?): ") + error.what());
-  }
 }
 
 std::uint32_t compute_graphics_family(const vk::raii::PhysicalDevice& physical) {
@@ -167,7 +134,7 @@ std::uint32_t choose(const std::vector<vk::raii::PhysicalDevice>& physical, cons
 
 std::vector<DeviceSummary> Device::list() {
   vk::raii::Context context;
-  const auto instance = make_instance(context, false);
+  const auto instance = make_instance(context, Validation::off);
   std::vector<DeviceSummary> result;
   std::uint32_t index = 0;
   for (const auto& physical : instance.enumeratePhysicalDevices()) result.push_back(summarise(physical, index++));
@@ -175,18 +142,9 @@ std::vector<DeviceSummary> Device::list() {
 }
 
 Device::Device(const std::string& selector) {
-  const bool validate = validation_wanted();
-  instance_ = make_instance(context_, validate);
-  if (validate) {
-    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    VkDebugUtilsMessengerCreateInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-    info.messageSeverity = static_cast<VkFlags>(Severity::eWarning | Severity::eError);
-    info.messageType = static_cast<VkFlags>(Type::eGeneral | Type::eValidation);
-    info.pfnUserCallback = on_message;
-    messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, vk::DebugUtilsMessengerCreateInfoEXT(info));
-  }
+  const Validation validation = validation_wanted();
+  instance_ = make_instance(context_, validation);
+  if (validation != Validation::off) messenger_ = make_messenger(instance_);
   auto devices = instance_.enumeratePhysicalDevices();
   std::vector<DeviceSummary> all;
   for (std::uint32_t i = 0; i < devices.size(); ++i) all.push_back(summarise(devices[i], i));
@@ -241,7 +199,7 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags
   throw Error(ErrorKind::device, summary_.name + ": no memory type " + vk::to_string(wanted));
 }
 
-std::uint64_t Device::validation_messages() { return validation_count.load(); }
+std::uint64_t Device::validation_messages() { return sheaf::validation_messages(); }
 
 void Device::account(std::int64_t bytes) const {
   const std::int64_t now = held_.fetch_add(bytes) + bytes;
