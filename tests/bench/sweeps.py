@@ -16,7 +16,7 @@ SAMPLES = (1, 4, 16, 64)
 JOB_FRAMES = 240
 
 
-def linearity(engine: Engine, case: Any, cache: Path, rounds: int) -> list[dict[str, float]]:
+def linearity(engine: Engine, case: Any, cache: Path, rounds: int) -> list[dict[str, Any]]:
     """Rays and milliseconds of a frame at each number of samples."""
     scene = prepare(case, cache, depth=4)
     runs: dict[int, list[Any]] = {spp: [] for spp in SAMPLES}
@@ -37,12 +37,16 @@ def linearity(engine: Engine, case: Any, cache: Path, rounds: int) -> list[dict[
     found = []
     for spp, taken in runs.items():
         calm = calmest(taken, max(1, rounds - 1))
-        found.append({
+        cpu = [run.cpu for run in taken if run.cpu is not None]
+        point = {
             "spp": spp,
             "rays": sum(taken[0].stats["frames"][1]["rays"].values()),
             "wall_ms": statistics.median(f.wall for run in calm for f in run.frames),
+            "cpu_ms": statistics.median(cpu) if cpu else 0.0,
+            "others": statistics.median(run.others for run in calm),
             "strategy": taken[0].stats["strategy"],
-        })  # fmt: skip
+        }
+        found.append(point)
     return found
 
 
