@@ -42,12 +42,11 @@ uvec2 on_hilbert2(uint place, uint bits) {
   return p;
 }
 
-// Place on the 3D Hilbert curve: axes to transpose (Skilling, "Programming the Hilbert curve", AIP 707, 2004), then interleaved.
-uint hilbert3(uvec3 p, uint bits) {
-  uint x[3] = uint[3](p.x, p.y, p.z);
+// Place on the 5D Hilbert curve: axes to transpose (Skilling, "Programming the Hilbert curve", AIP 707, 2004), then interleaved.
+uint hilbert5(uint x[5], uint bits) {
   for (uint q = 1u << (bits - 1u); q > 1u; q >>= 1) {
     uint m = q - 1u;
-    for (uint i = 0u; i < 3u; ++i) {
+    for (uint i = 0u; i < 5u; ++i) {
       if ((x[i] & q) != 0u) {
         x[0] ^= m;
       } else {
@@ -57,14 +56,13 @@ uint hilbert3(uvec3 p, uint bits) {
       }
     }
   }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
+  for (uint i = 1u; i < 5u; ++i) x[i] ^= x[i - 1u];
   uint t = 0u;
   for (uint q = 1u << (bits - 1u); q > 1u; q >>= 1)
-    if ((x[2] & q) != 0u) t ^= q - 1u;
+    if ((x[4] & q) != 0u) t ^= q - 1u;
   uint key = 0u;
   for (uint i = bits; i > 0u; --i)
-    for (uint axis = 0u; axis < 3u; ++axis) key = (key << 1) | (((x[axis] ^ t) >> (i - 1u)) & 1u);
+    for (uint axis = 0u; axis < 5u; ++axis) key = (key << 1) | (((x[axis] ^ t) >> (i - 1u)) & 1u);
   return key;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Keys (R 4.2, S): reflection and refraction rays by cell of the origin in a grid over the batch, then cell of the direction;
-// shadow rays by light, then by direction from it (point, spot) or place across it (directional). All along Hilbert curves.
+// Keys (R 4.2, S): reflection and refraction rays by cell of the origin in a grid over the batch and of the direction on its map, as one
+// space of five dimensions; shadow rays by light, then by direction from it (point, spot) or place across it (directional). All along
+// Hilbert curves.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -14,8 +15,7 @@ BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 layout(push_constant) uniform Push {
   uint kind;
-  uint origin_bits;     // an axis
-  uint direction_bits;  // an axis
+  uint bits;        // a coordinate
   uint light_bits;
 } push;
 
@@ -38,20 +38,19 @@ uint shadow_key(Ray ray, uint light) {
     vec3 v = cross(d, u);
     vec3 p = batch_place(ray.origin) - 0.5;
     vec2 across = vec2(dot(p, u), dot(p, v)) * 0.5774 + 0.5;  // |p| ≤ √3/2
-    cell = hilbert2(uvec2(quantise(across.x, push.direction_bits), quantise(across.y, push.direction_bits)), push.direction_bits);
+    cell = hilbert2(uvec2(quantise(across.x, push.bits), quantise(across.y, push.bits)), push.bits);
   } else {
     vec2 o = octahedral(ray.direction);
-    cell = hilbert2(uvec2(quantise(o.x, push.direction_bits), quantise(o.y, push.direction_bits)), push.direction_bits);
+    cell = hilbert2(uvec2(quantise(o.x, push.bits), quantise(o.y, push.bits)), push.bits);
   }
-  return push.light_bits == 0u ? cell : ((light & ((1u << push.light_bits) - 1u)) << (2u * push.direction_bits)) | cell;
+  return push.light_bits == 0u ? cell : ((light & ((1u << push.light_bits) - 1u)) << (2u * push.bits)) | cell;
 }
 
 uint secondary_key(Ray ray) {
   vec3 p = batch_place(ray.origin);
-  uvec3 c = uvec3(quantise(p.x, push.origin_bits), quantise(p.y, push.origin_bits), quantise(p.z, push.origin_bits));
   vec2 o = octahedral(ray.direction);
-  uvec2 d = uvec2(quantise(o.x, push.direction_bits), quantise(o.y, push.direction_bits));
-  return (hilbert3(c, push.origin_bits) << (2u * push.direction_bits)) | hilbert2(d, push.direction_bits);
+  return hilbert5(uint[5](quantise(o.x, push.bits), quantise(o.y, push.bits), quantise(p.x, push.bits), quantise(p.y, push.bits),
+                          quantise(p.z, push.bits)), push.bits);
 }
 
 void main() {

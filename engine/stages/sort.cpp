@@ -11,10 +11,11 @@ KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t ray
   KeyLayout layout;
   if (kind == gpu::KIND_SHADOW) {
     layout.light_bits = std::min<std::uint32_t>(static_cast<std::uint32_t>(std::bit_width(lights - 1)), 12);
-    layout.direction_bits = std::clamp((log2 + 1) / 2, 4U, std::min(10U, (32 - layout.light_bits) / 2));
+    layout.coordinates = 2;
+    layout.coordinate_bits = std::clamp((log2 + 1) / 2, 4U, std::min(10U, (32 - layout.light_bits) / 2));
   } else {
-    layout.origin_bits = 5;
-    layout.direction_bits = 4;
+    layout.coordinates = 5;
+    layout.coordinate_bits = 4;
   }
   return layout;
 }
@@ -65,9 +66,7 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   recorder.dispatch(bounds_, bounds, 1);
   bounds.reset = 0;
   recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_BLOCKS);
-  const struct {
-    std::uint32_t kind, origin_bits, direction_bits, light_bits;
-  } key{kind, layout.origin_bits, layout.direction_bits, layout.light_bits};
+  const struct { std::uint32_t kind, bits, light_bits; } key{kind, layout.coordinate_bits, layout.light_bits};
   recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
 
   recorder.stage("compress");
