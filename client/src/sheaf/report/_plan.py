@@ -48,6 +48,7 @@ class StudyOptions:
         minutes: when to stop beginning new measurements; what is left over is listed.
         point_seconds: when to end a run that takes too long.
         spp: samples a pixel to try.
+        adaptive: errors to try with adaptive samples, of at most 256.
         depth: generations to try.
         cutoff: least weights to try.
         memory: budgets to try, MiB; they change time alone.
@@ -65,6 +66,7 @@ class StudyOptions:
     minutes: float = 10.0
     point_seconds: float = 60.0
     spp: tuple[int, ...] = (1, 2, 4, 8, 16)
+    adaptive: tuple[float, ...] = (0.05, 0.02, 0.01)
     depth: tuple[int, ...] = (1, 2, 4, 8)
     cutoff: tuple[float, ...] = (0.0, 0.002, 0.02, 0.1)
     memory: tuple[int, ...] = (16,)
@@ -123,6 +125,9 @@ def error_points(program: Program, options: StudyOptions, strategy: str) -> list
     most = options.spp[len(options.spp) // 2]
     sweeps += [{"spp": most, "depth": depth} for depth in options.depth]
     sweeps += [{"spp": most, "depth": max(options.depth), "cutoff": cutoff} for cutoff in options.cutoff]
+    if "filter" in program.options:
+        sweeps += [{"spp": f"adaptive:{error}:256", "depth": max(options.depth)} for error in options.adaptive]
+        sweeps += [{"spp": most, "depth": middle, "filter": name} for name in ("box", "triangle")]
     for knob, values in options.knobs.items():
         sweeps += [{"spp": most, "depth": middle, knob: value} for value in values]
     sweeps += [{"spp": spp, "depth": depth} for spp, depth in itertools.product(options.spp, options.depth)]
