@@ -144,6 +144,10 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
                "let workers read and do whatever the service may (limits stay)");
   app.add_option("--worker-reads", options.service.runner.confinement.readable,
                  "further folder that workers may read, as for drivers in unusual places; may be repeated");
+  app.add_option("--worker-nice", options.service.runner.confinement.nice,
+                 "niceness of workers beyond the service's own, so that it answers while they render")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 19));
   app.add_option("--attempts", options.service.runner.attempts,
                  "starts of a job's worker without a new frame, where a lost device or a kill from outside ended it")
       ->capture_default_str()

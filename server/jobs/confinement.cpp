@@ -5,6 +5,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -107,6 +108,9 @@ Confinement::Confinement(const ConfinementOptions& options, const std::string& p
 
 unsigned Confinement::apply() const noexcept {
   unsigned held = 0;
+  if (::nice(options_.nice) == -1) {
+    // It may also be the niceness; either way the worker goes on.
+  }
   // SIGXCPU says what it was; SIGKILL follows for a worker that will not hear.
   if (limit(RLIMIT_CORE, 0, 0) & limit(RLIMIT_DATA, options_.memory_bytes, options_.memory_bytes) &
       limit(RLIMIT_CPU, options_.cpu_seconds, options_.cpu_seconds + 5) &

@@ -18,6 +18,7 @@ struct ConfinementOptions {
   std::uint64_t memory_bytes = std::uint64_t{16} << 30;  // of private memory: RLIMIT_DATA
   std::uint64_t cpu_seconds = 86'400;                    // of processor time
   std::uint64_t file_bytes = std::uint64_t{8} << 30;     // of one file
+  int nice = 10;                      // beyond the service's own, so that the service answers while its workers render
   std::vector<std::string> readable;  // beyond the system's own folders, the worker's program and its job
 };
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import httpx
 
-PATIENCE = 120.0  # seconds that one job may take before its client calls it lost
+PATIENCE = 900.0  # seconds that one job may take before its client calls it lost: a machine may be slow
 
 
 @dataclass

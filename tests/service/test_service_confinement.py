@@ -2,6 +2,7 @@
 """What a worker may do, told by workers that try."""
 
 import json
+import os
 import pathlib
 import sys
 from collections.abc import Callable
@@ -116,3 +117,17 @@ def test_time_is_limited(
     end = service.wait(service.accepted(gltf(), {"frames": 0}))
     assert end["state"] == "failed" and end["error"]["code"] == "limit-exceeded"
     assert said in end["error"]["message"] and "1 s" in end["error"]["message"] and end["starts"] == 1
+
+
+@pytest.mark.parametrize(("options", "more"), [([], 10), (["--worker-nice", "3"], 3), (["--worker-nice", "0"], 0)])
+def test_workers_give_way_to_the_service(
+    start: Callable[..., Service], tmp_path: pathlib.Path, options: list[str], more: int
+) -> None:
+    place = tmp_path / "worker"
+    place.write_text("#!/bin/sh\nread -r line < /proc/self/stat\necho $line >&2\nexit 3\n")
+    place.chmod(0o755)
+    service = start(*options, sheaf=place)
+    job = service.accepted(gltf(), {"frames": 0})
+    service.wait(job)
+    niceness = int(service.http.get(f"/v1/jobs/{job}/log").text.split(") ")[1].split()[16])  # proc(5), field 19
+    assert niceness == min(19, os.nice(0) + more)
