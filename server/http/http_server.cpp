@@ -92,8 +92,9 @@ std::string HttpServer::bind(const std::string& host, const std::string& port) {
 void HttpServer::run() {
   pool_.start();
   std::array<epoll_event, 64> events{};
+  bool soon = false;
   while (!stopping_) {
-    const int n = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), 1000);
+    const int n = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), soon ? 20 : 1000);
     for (int i = 0; i < n; ++i) {
       const int fd = events[static_cast<std::size_t>(i)].data.fd;
       if (fd == listener_.get())
@@ -102,7 +103,7 @@ void HttpServer::run() {
         wake_connection(fd);
     }
     close_idle(Clock::now() - options_.keep_alive);
-    pool_.tick();
+    soon = pool_.tick();
   }
   listener_.reset();
   close_idle(Clock::time_point::max());

@@ -97,15 +97,18 @@ void WorkerPool::work(std::uint64_t number) {
   while (ConnectionPtr connection = next(number)) serve_(std::move(connection));
 }
 
-void WorkerPool::tick() {
+bool WorkerPool::tick() {
   std::vector<std::thread> gone;
+  bool waited_for = false;
   {
     const std::lock_guard lock(mutex_);
     for (const std::uint64_t number : std::exchange(ended_, {}))
       gone.push_back(std::move(threads_.extract(number).mapped()));
     for (std::size_t i = 0; i < waiting_.size(); ++i) make_room();
+    waited_for = !waiting_.empty();
   }
   for (std::thread& thread : gone) thread.join();
+  return waited_for;
 }
 
 void WorkerPool::drain(Clock::time_point deadline) {

@@ -36,8 +36,9 @@ class WorkerPool : private StallObserver {
   void add(ConnectionPtr connection);
   void release(int fd);
 
-  /// To be called about once a second: ended threads are joined, and who stalls others cut off.
-  void tick();
+  /// To be called about once a second: ended threads are joined, and who stalls others cut off. True: somebody waits
+  /// for that, so call again soon.
+  bool tick();
 
   /// Waits until nothing is served any more, or the deadline; then serves only what waits already.
   void drain(std::chrono::steady_clock::time_point deadline);
