@@ -5,12 +5,14 @@ layout(constant_id = 9) const bool TEXTURED = true;
 
 float srgb_to_linear(float c) { return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4); }
 
-int wrap_texel(int i, int size, uint mode) {
-  if (mode == 2u) return clamp(i, 0, size - 1);
-  int period = mode == 1u ? 2 * size : size;
-  int m = i % period;
-  if (m < 0) m += period;
-  return m < size ? m : period - 1 - m;
+// Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU device. All is exact but the quotient, and
+// its floor is off by one at most.
+float wrap_texel(float i, float size, uint mode) {
+  if (mode == 2u) return clamp(i, 0.0, size - 1.0);
+  float period = mode == 1u ? 2.0 * size : size;
+  float m = i - period * floor(i / period);
+  m = m < 0.0 ? m + period : m >= period ? m - period : m;
+  return m < size ? m : period - 1.0 - m;
 }
 
 struct Level {  // of a mip chain
@@ -18,34 +20,31 @@ struct Level {  // of a mip chain
   uvec2 size;
 };
 
+Level next_level(Level l) { return Level(l.first_texel + l.size.x * l.size.y, max(l.size / 2u, uvec2(1))); }
+
 Level level_of(TextureUse t, uint level) {
   Level l = Level(t.first_texel, uvec2(t.width, t.height));
-  for (uint k = 0u; k < level; ++k) {
-    l.first_texel += l.size.x * l.size.y;
-    l.size = max(l.size / 2u, uvec2(1));
-  }
+  for (uint k = 0u; k < level; ++k) l = next_level(l);
   return l;
 }
 
-vec4 fetch_texel(Level l, uint flags, int x, int y, bool srgb) {
-  uint xi = uint(wrap_texel(x, int(l.size.x), flags & 3u));
-  uint yi = uint(wrap_texel(y, int(l.size.y), (flags >> 2) & 3u));
-  vec4 c = unpackUnorm4x8(load_texel(l.first_texel + yi * l.size.x + xi));
-  if (srgb) c.rgb = vec3(srgb_to_linear(c.r), srgb_to_linear(c.g), srgb_to_linear(c.b));
-  return c;
-}
-
 vec4 sample_level(Level l, uint flags, vec2 uv, bool srgb) {
-  // Far-off coordinates lose their fraction anyway; the clamp keeps the integer conversion defined.
-  vec2 at = clamp(uv * vec2(l.size), vec2(-1e9), vec2(1e9));
-  if ((flags & TEXTURE_NEAREST) != 0u) return fetch_texel(l, flags, int(floor(at.x)), int(floor(at.y)), srgb);
-  at -= 0.5;
-  vec2 base = floor(at), f = at - base;
+  vec2 size = vec2(l.size);
+  // Coordinates further off have lost their fraction, and so what there is to interpolate.
+  vec2 at = clamp(uv * size, vec2(-8388000.0), vec2(8388000.0));
+  bool nearest = (flags & TEXTURE_NEAREST) != 0u;
+  if (!nearest) at -= 0.5;
+  vec2 base = floor(at), f = nearest ? vec2(0) : at - base;
+  uint mode_x = flags & 3u, mode_y = (flags >> 2) & 3u;
+  uvec2 x = uvec2(vec2(wrap_texel(base.x, size.x, mode_x), wrap_texel(base.x + 1.0, size.x, mode_x)));
+  uvec2 y = uvec2(vec2(wrap_texel(base.y, size.y, mode_y), wrap_texel(base.y + 1.0, size.y, mode_y)));
+  uint taps = nearest ? 1u : 4u;
   vec4 sum = vec4(0);
-  [[dont_unroll]] for (int tap = 0; tap < 4; ++tap) {
-    ivec2 corner = ivec2(tap & 1, tap >> 1);
-    vec2 weight = mix(1.0 - f, f, notEqual(corner, ivec2(0)));
-    sum += weight.x * weight.y * fetch_texel(l, flags, int(base.x) + corner.x, int(base.y) + corner.y, srgb);
+  [[dont_unroll]] for (uint tap = 0u; tap < taps; ++tap) {
+    bool right = (tap & 1u) != 0u, low = (tap & 2u) != 0u;
+    vec4 c = unpackUnorm4x8(load_texel(l.first_texel + (low ? y.y : y.x) * l.size.x + (right ? x.y : x.x)));
+    if (srgb) c.rgb = vec3(srgb_to_linear(c.r), srgb_to_linear(c.g), srgb_to_linear(c.b));
+    sum += (right ? f.x : 1.0 - f.x) * (low ? f.y : 1.0 - f.y) * c;
   }
   return sum;
 }
@@ -81,12 +80,14 @@ vec4 sample_filtered(TextureUse t, UvFootprint f, bool srgb) {
   if (t.levels == 1u) taps = 1.0;
   uint level = uint(lod), levels = lod > float(level) ? 2u : 1u;
   uint flags = lod > 0.0 ? t.flags & ~TEXTURE_NEAREST : t.flags;  // "nearest" is how it is magnified
+  Level lower = level_of(t, level), upper = next_level(lower);
+  float share = lod - float(level);  // of the upper level
   vec4 sum = vec4(0);
   [[dont_unroll]] for (uint k = 0u; k < uint(taps) * levels; ++k) {
-    uint upper = k % levels;
-    float weight = levels == 1u ? 1.0 : upper == 1u ? lod - float(level) : 1.0 - (lod - float(level));
-    float place = (float(k / levels) + 0.5) / taps - 0.5;
-    sum += weight * sample_level(level_of(t, level + upper), flags, f.at + axis * place, srgb);
+    bool up = k >= uint(taps);
+    float place = (float(up ? k - uint(taps) : k) + 0.5) / taps - 0.5;
+    Level l = Level(up ? upper.first_texel : lower.first_texel, up ? upper.size : lower.size);
+    sum += (up ? share : 1.0 - share) * sample_level(l, flags, f.at + axis * place, srgb);
   }
   return sum / taps;
 }

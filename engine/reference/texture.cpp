@@ -112,8 +112,8 @@ glm::dvec4 Textures::texel(const Image& image, const Level& level, std::int64_t 
 
 glm::dvec4 Textures::filtered(const Image& image, const Level& level, const Texture& texture, const glm::dvec2& uv,
                               TexelKind kind, bool nearest) const {
-  // Beyond 1e9 texels there is no fraction left; the clamp keeps the conversion to integers defined.
-  glm::dvec2 p = glm::clamp(uv * glm::dvec2(level.width, level.height), glm::dvec2(-1e9), glm::dvec2(1e9));
+  // As on the device: beyond it single precision has no fraction left.
+  glm::dvec2 p = glm::clamp(uv * glm::dvec2(level.width, level.height), glm::dvec2(-8388000.0), glm::dvec2(8388000.0));
   const auto read = [&](std::int64_t x, std::int64_t y) { return texel(image, level, x, y, texture, kind); };
   if (nearest) return read(std::llround(std::floor(p.x)), std::llround(std::floor(p.y)));
   p -= 0.5;
