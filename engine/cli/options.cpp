@@ -98,7 +98,10 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--strategy", o.strategy, "auto, hybrid, crsh, rsh, bvh, brute, rayquery, reference")
       ->capture_default_str();
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
-  command.add_option("--primary", o.primary, "raster or trace")->capture_default_str();
+  command
+      .add_option("--primary", o.primary,
+                  "raster, trace or auto: raster, but where a pixel has more than eight triangles")
+      ->capture_default_str();
   command.add_option("--aov", o.layers, "layers: Z,N,P,albedo,UV,id,tests or all");
   command.add_option("--compression", o.compression, "none, rle, zips, zip, piz, dwaa")->capture_default_str();
   command.add_option("--name", o.name, "file names; default <scene>.####.exr");
@@ -128,8 +131,9 @@ void resolve_options(RenderOptions& o) {
   s.strategy = parse_strategy(o.strategy);
   s.sort = one_of<SortPolicy>("sort", o.sort,
                               {{"auto", SortPolicy::automatic}, {"on", SortPolicy::on}, {"off", SortPolicy::off}});
-  s.primary =
-      one_of<PrimaryMethod>("primary", o.primary, {{"raster", PrimaryMethod::raster}, {"trace", PrimaryMethod::trace}});
+  s.primary = one_of<PrimaryMethod>(
+      "primary", o.primary,
+      {{"auto", PrimaryMethod::automatic}, {"raster", PrimaryMethod::raster}, {"trace", PrimaryMethod::trace}});
   s.layers = parse_layers(o.layers);
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));

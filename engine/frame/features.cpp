@@ -10,6 +10,10 @@
 namespace sheaf {
 namespace {
 
+// A rasteriser looks at every triangle, a ray at the logarithm. On a CPU device 10 M triangles cost 1.6 s to draw at
+// 320×180 (170 a pixel) and 0.2 s to trace; 1 M at 1280×720 (one a pixel) 1.7 s to draw and 2.2 s to trace.
+constexpr std::uint64_t most_triangles_a_pixel = 8;
+
 // Least roughness a material can show anywhere: its factor times the darkest green of its texture.
 float least_roughness(const Scene& scene, const Material& material) {
   const auto& use = material.metallic_roughness_texture;
@@ -76,7 +80,11 @@ Features find_features(const Scene& scene, const std::vector<std::uint32_t>& ani
       features.moving_lights |= moving[index];
     }
     if (node.mesh_count == 0) continue;
-    for (std::uint32_t m = 0; m < node.mesh_count; ++m) used.insert(scene.meshes[node.first_mesh + m].material);
+    for (std::uint32_t m = 0; m < node.mesh_count; ++m) {
+      const Mesh& mesh = scene.meshes[node.first_mesh + m];
+      used.insert(mesh.material);
+      features.triangles += mesh.triangles.size() * std::max<std::size_t>(node.instances.size(), 1);
+    }
     const bool skinned = node.skin != none;
     if (skinned)
       for (const auto joint : scene.skins[node.skin].joints) features.skinned |= moving[joint];
@@ -102,9 +110,15 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!plan.refractions) leave("refraction", settings.depth == 0 ? "--depth 0" : "no transmissive or blended material");
   if (!features.volumes) leave("media", "no volume that refracts and absorbs");
   plan.adaptive = settings.samples.error.has_value();
-  plan.raster = settings.primary == PrimaryMethod::raster && !plan.adaptive;
+  const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+  const bool crowded = features.triangles > most_triangles_a_pixel * pixels;
+  plan.raster =
+      (settings.primary == PrimaryMethod::raster || (settings.primary == PrimaryMethod::automatic && !crowded)) &&
+      !plan.adaptive;
   if (!plan.raster)
-    leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels" : "--primary trace");
+    leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels"
+                    : settings.primary == PrimaryMethod::trace ? "--primary trace"
+                                                               : "more than eight triangles a pixel: rays are cheaper");
   plan.ray_words = features.textured ? gpu::RAY_WORDS_WITH_CONE : gpu::RAY_WORDS;
   if (!features.textured) leave("texture filter", "no textures");
   plan.deform = features.skinned || features.morphed;

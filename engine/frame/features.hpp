@@ -16,6 +16,7 @@ namespace sheaf {
 
 struct Features {
   std::uint32_t lights = 0;
+  std::uint64_t triangles = 0;
   bool default_light = false;  // the scene has none of its own
   bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
   bool textured = false, normal_mapped = false, unlit = false, emissive = false;

@@ -28,7 +28,9 @@ nlohmann::ordered_json settings_json(const RenderSettings& s) {
                               {"filter", name_of(s.filter)},
                               {"depth", s.depth},
                               {"cutoff", s.cutoff},
-                              {"primary", s.primary == PrimaryMethod::raster ? "raster" : "trace"},
+                              {"primary", s.primary == PrimaryMethod::raster  ? "raster"
+                                          : s.primary == PrimaryMethod::trace ? "trace"
+                                                                              : "auto"},
                               {"opaque", s.opaque}};
   if (s.samples.error) json["spp"] = text_of(s.samples);
   if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "frame/list_dump.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 
 namespace sheaf {
+namespace {
+
+// Of the triangles' read-back: a scene may be larger than any one buffer.
+constexpr std::uint64_t piece_bytes = std::uint64_t{40} << 20U;
+
+}  // namespace
 
 ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
-  triangles_ = Buffer(device, "dump", scene.triangle_words().bytes(), Kind::readback);
+  triangles_ = Buffer(device, "dump", std::min(scene.triangle_words().bytes(), piece_bytes), Kind::readback);
   rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * memory.ray_words * 4, Kind::readback);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
@@ -19,11 +26,16 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
 void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
   const std::size_t count = scene_.triangles();
   host_corners_.assign(count * 9, 0);
-  recorder.copy(scene_.triangle_words(), triangles_, scene_.triangle_words().bytes());
-  recorder.submit_and_wait();
-  const auto from = triangles_.view<float>();
-  for (std::size_t t = 0; t < count; ++t)
-    for (std::size_t c = 0; c < 9; ++c) host_corners_[t * 9 + c] = from[t * gpu::TRIANGLE_WORDS + c];
+  constexpr std::size_t at_once = piece_bytes / (gpu::TRIANGLE_WORDS * 4);
+  for (std::size_t first = 0; first < count; first += at_once) {
+    const std::size_t triangles = std::min(at_once, count - first);
+    recorder.copy(scene_.triangle_words(), triangles_, triangles * gpu::TRIANGLE_WORDS * 4,
+                  first * gpu::TRIANGLE_WORDS * 4);
+    recorder.submit_and_wait();
+    const auto from = triangles_.view<float>();
+    for (std::size_t t = 0; t < triangles; ++t)
+      for (std::size_t c = 0; c < 9; ++c) host_corners_[(first + t) * 9 + c] = from[t * gpu::TRIANGLE_WORDS + c];
+  }
   writer.triangles(host_corners_, scene_.origin());
 }
 

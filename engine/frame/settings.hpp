@@ -15,7 +15,7 @@ namespace sheaf {
 
 enum class Strategy { automatic, hybrid, crsh, rsh, bvh, brute, rayquery, reference };
 enum class SortPolicy { automatic, on, off };
-enum class PrimaryMethod { raster, trace };
+enum class PrimaryMethod { automatic, raster, trace };
 
 [[nodiscard]] Strategy parse_strategy(const std::string& name);  // Error{usage} naming what there is
 [[nodiscard]] const char* name_of(Strategy strategy);
@@ -35,7 +35,7 @@ struct RenderSettings {
   float cutoff = 0.002F;
   Strategy strategy = Strategy::automatic;
   SortPolicy sort = SortPolicy::automatic;
-  PrimaryMethod primary = PrimaryMethod::raster;
+  PrimaryMethod primary = PrimaryMethod::automatic;
   bool opaque = false;
   LayerSet layers;
   std::uint64_t memory_mib = 1024;  // for rays, pairs and what else scales with the picture, not with the scene

@@ -37,7 +37,7 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
 
   recorder.stage("traverse");
   const bool shadow = kind == gpu::KIND_SHADOW;
-  recorder.dispatch_indirect(shadow ? any_ : nearest_, kind, gpu::ARGS_TIGHT, false);
+  recorder.dispatch_indirect(shadow ? any_ : nearest_, kind, gpu::ARGS_TIGHT);
   recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_LOOSE);
 }
 

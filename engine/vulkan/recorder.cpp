@@ -78,21 +78,19 @@ void Recorder::prepare(const Kernel& kernel, const void* push, std::size_t bytes
   ++dispatches_;
 }
 
-void Recorder::dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups,
-                              bool barrier_after) {
+void Recorder::dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups) {
   if (groups == 0) return;
   prepare(kernel, push, bytes);
   constexpr std::uint64_t row = 32768;  // within every device's limit; shaders unfold it (global_group in common.glsl)
   const std::uint64_t x = std::min(groups, row), y = (groups + row - 1) / row;
   commands_.dispatch(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1);
-  if (barrier_after) barrier();
+  barrier();
 }
 
-void Recorder::indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args,
-                              bool barrier_after) {
+void Recorder::indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args) {
   prepare(kernel, push, bytes);
   commands_.dispatchIndirect(bound_[ROLE_ARGS], args * 12ULL);
-  if (barrier_after) barrier();
+  barrier();
 }
 
 void Recorder::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes) {

@@ -29,15 +29,15 @@ class Recorder {
 
   /// `groups` workgroups; more than the device's limit in x are folded into y.
   template <typename Push>
-  void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups, bool barrier_after = true) {
+  void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups) {
     static_assert(sizeof(Push) <= push_bytes);
-    dispatch_bytes(kernel, &push, sizeof(Push), groups, barrier_after);
+    dispatch_bytes(kernel, &push, sizeof(Push), groups);
   }
   /// Workgroups from record `args` (one of ARGS_…) of the buffer bound to ROLE_ARGS.
   template <typename Push>
-  void dispatch_indirect(const Kernel& kernel, const Push& push, std::uint32_t args, bool barrier_after = true) {
+  void dispatch_indirect(const Kernel& kernel, const Push& push, std::uint32_t args) {
     static_assert(sizeof(Push) <= push_bytes);
-    indirect_bytes(kernel, &push, sizeof(Push), args, barrier_after);
+    indirect_bytes(kernel, &push, sizeof(Push), args);
   }
 
   void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
@@ -62,10 +62,8 @@ class Recorder {
 
  private:
   void begin();
-  void dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups,
-                      bool barrier_after);
-  void indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args,
-                      bool barrier_after);
+  void dispatch_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint64_t groups);
+  void indirect_bytes(const Kernel& kernel, const void* push, std::size_t bytes, std::uint32_t args);
   void prepare(const Kernel& kernel, const void* push, std::size_t bytes);
   void mark(const char* name);
 

@@ -72,7 +72,7 @@ constexpr std::array strategies{"auto",     "hybrid", "crsh",  "rsh",      "frus
                                 "classify", "bvh",    "brute", "rayquery", "reference"};
 constexpr std::array filters{"box", "triangle", "gaussian"};
 constexpr std::array switches{"auto", "on", "off"};
-constexpr std::array primaries{"raster", "trace"};
+constexpr std::array primaries{"auto", "raster", "trace"};
 constexpr std::array compressions{"none", "rle", "zips", "zip", "piz", "dwaa"};
 
 std::string frames(const json& value, Context& context) {

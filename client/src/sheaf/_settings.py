@@ -14,7 +14,7 @@ Strategy = Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh"
 Switch = Literal["auto", "on", "off"]
 Quality = Literal["draft", "production", "exact"]
 Filter = Literal["box", "triangle", "gaussian"]
-Primary = Literal["raster", "trace"]
+Primary = Literal["auto", "raster", "trace"]
 Compression = Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
 
 
