@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What is scanned, and what becomes of the result: one of the SCAN_… names, defined by the build's table of variants.
+#if defined(SCAN_CELLS)
+#include "cell_elements.glsl"
+#else
 #include "rays.glsl"
 #include "lists.glsl"
 #include "args.glsl"
@@ -108,4 +111,5 @@ uint scan_load(uint i) { return scan_in[i]; }
 #endif
 void scan_store(uint i, uint result, uint own) { scan_out[i] = result; }
 void scan_total(uint total) { counters[1] = total; }
+#endif
 #endif

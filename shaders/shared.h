@@ -61,7 +61,11 @@ using mat3 = glm::mat3;
 #define ROLE_STRUCTURE 52  // the one role that is an acceleration structure
 #define ROLE_ACTIVE_PIXELS 53
 #define ROLE_SAMPLE_PLACES 54
-#define ROLE_COUNT 55
+#define ROLE_PACKET_KEYS 55
+#define ROLE_PACKETS 56
+#define ROLE_LISTS 57
+#define ROLE_PAIR_LEVELS 58
+#define ROLE_COUNT 59
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 
@@ -98,6 +102,13 @@ SHEAF_CONST COUNT_LOOSE = 13u;        // rays that go one a lane
 SHEAF_CONST COUNT_SORT = 14u;         // 1: the batch is worth sorting
 SHEAF_CONST COUNT_SURVIVORS = 15u;    // of a batch of pairs
 SHEAF_CONST COUNT_BOUNDS = 16u;       // 6 words: ordered-integer bounds of the batch's origins
+SHEAF_CONST COUNT_CELLS = 22u;        // packets or cells of the list
+SHEAF_CONST COUNT_WALK_FIRST = 23u;   // cells at work: the first …
+SHEAF_CONST COUNT_WALK_CELLS = 24u;   // … and how many; none once their pairs had no room
+SHEAF_CONST COUNT_WALK_OVERFLOW = 25u;
+SHEAF_CONST COUNT_OPEN = 26u;         // 1: some pair of the level has a node
+SHEAF_CONST COUNT_PAIR_HALF = 27u;    // half of the pairs' buffer that holds the last level made
+SHEAF_CONST COUNT_PAIR_HALVES = 28u;  // 2 words: pairs in each half
 SHEAF_CONST COUNT_WORDS = 32u;
 
 // Statistics, 64-bit sums as two words (low, high), a block of STAT_WORDS a kind.
@@ -130,7 +141,13 @@ SHEAF_CONST ARGS_SLOTS_SHADOW = 11u;
 SHEAF_CONST ARGS_BUNDLE_RUNS = 12u;   // one invocation a bundle
 SHEAF_CONST ARGS_BUNDLE_BLOCKS = 13u;  // one workgroup a scan block of the bundles
 SHEAF_CONST ARGS_SORT_SPINE = 14u;     // a single workgroup, or nothing when the batch is not sorted
-SHEAF_CONST ARGS_COUNT = 15u;
+SHEAF_CONST ARGS_WALK_RUNS = 15u;      // one invocation a cell of the walk
+SHEAF_CONST ARGS_WALK_CELLS = 16u;     // one workgroup a cell of the walk
+SHEAF_CONST ARGS_PAIRS = 17u;          // one invocation a pair of the level at work
+SHEAF_CONST ARGS_PAIR_BLOCKS = 18u;    // one workgroup a scan block of them
+SHEAF_CONST ARGS_PAIR_SCATTER = 19u;   // the same, or nothing where the next level has no room
+SHEAF_CONST ARGS_PAIR_RANGES = 20u;    // one invocation a pair of the last level made
+SHEAF_CONST ARGS_COUNT = 21u;
 
 SHEAF_CONST GROUP = 64u;          // invocations of a plain workgroup
 SHEAF_CONST SCAN_GROUP = 32u;     // invocations of a scan workgroup …
@@ -175,6 +192,12 @@ SHEAF_CONST MAX_NODES = 1u << 24;     // a stack entry holds a node and a mask o
 // Nodes of the ray hierarchy: sphere of the origins (centre, radius), cone of the directions (axis, half-angle): the 8 floats
 // of R 4.3; and the largest far limit, so that shadow rays end at their light.
 SHEAF_CONST RAY_NODE_WORDS = 9u;
+
+// Frustums of packets and cells (frustum_memory.glsl), and what their pairs with nodes entered: a bit a child in visiting order,
+// and the octant of that order; or that the pair has a leaf, and is kept.
+SHEAF_CONST FRUSTUM_WORDS = 12u;
+SHEAF_CONST PAIR_KEPT = 256u;
+SHEAF_CONST PAIR_OCTANT = 9u;  // its lowest bit
 
 SHEAF_CONST MATERIAL_MASK = 1u;
 SHEAF_CONST MATERIAL_BLEND = 2u;

@@ -5,6 +5,7 @@
 // two inner loops, one that descends until every lane has a leaf and one that tests leaves' triangles; and a node's children
 // are tested as straight-line code.
 #include "visit.glsl"
+#include "node_boxes.glsl"
 
 struct Tests {
   uint boxes;
@@ -19,12 +20,6 @@ struct Walk {
 };
 
 bool is_rest_of_leaf(uint child) { return !is_node(child) && child < NEXT; }
-
-Boxes load_boxes(uint node) {
-  NodePairs words = node_pairs(node);
-  return Boxes(unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1])), unpack32(words.pair[2]), unpack32(words.pair[3]),
-               unpack32(words.pair[4]), unpack32(words.pair[5]), unpack32(words.pair[6]), unpack32(words.pair[7]));
-}
 
 // Tests a node's children; those entered become the group at work.
 void step_node(uint node, Ray ray, Shear s, float farthest, inout Walk w, inout Tests tests) {

@@ -16,13 +16,20 @@ BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_WORK, readonly, uint, work);
 layout(constant_id = 8) const bool LOOSE = false;
 
-layout(push_constant) uniform Push { uint kind; } push;
+layout(push_constant) uniform Push {
+  uint kind;
+  uint first, count;  // of the list's rays; 0: all
+} push;
 
 void main() {
   uint i = global_index();
   if (LOOSE) {
     if (global_group() >= counters[COUNT_LOOSE]) return;
     i = work[global_group()] * BUNDLE + gl_LocalInvocationID.x;
+  }
+  if (push.count != 0u) {
+    if (i >= push.count) return;
+    i += push.first;
   }
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint slot = order[i];

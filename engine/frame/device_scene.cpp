@@ -256,6 +256,7 @@ void DeviceScene::build_top_level(Recorder& recorder, std::vector<std::vector<st
     if (heights.size() <= height) heights.resize(height + 1);
     heights[height].push_back(static_cast<std::uint32_t>(n));
   }
+  hierarchy_levels_ = static_cast<std::uint32_t>(heights.size());
   recorder.copy(top_staging_, nodes_, tree.nodes.size() * gpu::NODE_WORDS * 4);
 }
 

@@ -41,6 +41,7 @@ class DeviceScene {
   [[nodiscard]] const Buffer& triangle_words() const { return triangles_; }
   /// What shaders read by address (memory.glsl), set in the frame's block.
   void set_addresses(gpu::Frame& frame) const;
+  [[nodiscard]] std::uint32_t hierarchy_levels() const { return hierarchy_levels_; }
   [[nodiscard]] const Buffer& deforms() const { return deforms_; }
   [[nodiscard]] const std::vector<Box>& instance_boxes() const { return boxes_; }
 
@@ -64,7 +65,7 @@ class DeviceScene {
   glm::dvec3 origin_{0};
   float box_pad_ = 0;
   double grid_ = 1;  // the origin snaps to it, so that a moving camera does not move the whole scene
-  std::uint32_t light_count_ = 0;
+  std::uint32_t light_count_ = 0, hierarchy_levels_ = 0;
   bool fresh_ = true;
 };
 

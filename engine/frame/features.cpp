@@ -128,12 +128,15 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!features.normal_mapped) leave("normal maps", "no material has one");
   if (!features.masked) leave("alpha test", "no alpha-masked material");
   const bool traced = strategy != Strategy::brute && strategy != Strategy::rayquery && strategy != Strategy::reference;
-  plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid;
+  plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid || strategy == Strategy::frustum;
   if (!plan.object_hierarchy)
     leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
   plan.ray_hierarchy = strategy == Strategy::hybrid || strategy == Strategy::rsh || strategy == Strategy::crsh;
-  if (!plan.ray_hierarchy) leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
-  plan.sorts = (strategy == Strategy::hybrid || strategy == Strategy::crsh) && settings.sort != SortPolicy::off;
+  plan.packets = strategy == Strategy::frustum;
+  if (!plan.ray_hierarchy && !plan.packets)
+    leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
+  plan.sorts = (strategy == Strategy::hybrid || strategy == Strategy::crsh || strategy == Strategy::frustum) &&
+               settings.sort != SortPolicy::off;
   if (!plan.sorts)
     leave("sort", settings.sort == SortPolicy::off && traced
                       ? "--sort off"

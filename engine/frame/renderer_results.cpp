@@ -40,7 +40,7 @@ void Renderer::collect_generations(RenderedFrame& out) {
     const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
     found->key_bits = layout.bits();
     found->chunks += counters[gpu::COUNT_CHUNKS];
-    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE];
+    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE] + counters[gpu::COUNT_CELLS];
     found->tight += counters[gpu::COUNT_TIGHT];
     if (counters[gpu::COUNT_SORT] != 0) {
       found->sorted = true;

@@ -12,10 +12,11 @@
 namespace sheaf {
 namespace {
 
-constexpr std::array<std::pair<Strategy, const char*>, 8> strategies{{{Strategy::automatic, "auto"},
+constexpr std::array<std::pair<Strategy, const char*>, 9> strategies{{{Strategy::automatic, "auto"},
                                                                       {Strategy::hybrid, "hybrid"},
                                                                       {Strategy::crsh, "crsh"},
                                                                       {Strategy::rsh, "rsh"},
+                                                                      {Strategy::frustum, "frustum"},
                                                                       {Strategy::bvh, "bvh"},
                                                                       {Strategy::brute, "brute"},
                                                                       {Strategy::rayquery, "rayquery"},

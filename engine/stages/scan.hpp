@@ -32,6 +32,13 @@ class Scan {
     recorder.dispatch_indirect(scatter_, push, args);
   }
 
+  /// `scatter_args`: where the spine decides whether there is room to scatter into.
+  void record(Recorder& recorder, const ScanPush& push, std::uint32_t args, std::uint32_t scatter_args) const {
+    recorder.dispatch_indirect(reduce_, push, args);
+    recorder.dispatch(spine_, push, 1);
+    recorder.dispatch_indirect(scatter_, push, scatter_args);
+  }
+
   void record_blocks(Recorder& recorder, const ScanPush& push, std::uint64_t blocks) const {
     recorder.dispatch(reduce_, push, blocks);
     recorder.dispatch(spine_, push, 1);

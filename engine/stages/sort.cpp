@@ -5,6 +5,14 @@
 #include <bit>
 
 namespace sheaf {
+namespace {
+
+bool always_sorts(const TraceContext& context) {  // as published
+  return context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ||
+         context.strategy == Strategy::frustum;
+}
+
+}  // namespace
 
 KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays) {
   const auto log2 = static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(rays, 1)));
@@ -51,6 +59,14 @@ bool SortRays::record_passes(Recorder& recorder, const RayMemory& memory, std::u
   return in_alt;
 }
 
+void SortRays::record_keys(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const {
+  const KeyLayout layout = key_layout(kind, context.scene.lights(), context.memory.tile_pixels);
+  recorder.stage("hash");
+  recorder.bind(ROLE_KEYS, context.memory.keys);
+  const struct { std::uint32_t kind, bits, light_bits; } key{kind, layout.coordinate_bits, layout.light_bits};
+  recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
+}
+
 void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const {
   const RayMemory& memory = context.memory;
   const KeyLayout layout = key_layout(kind, context.scene.lights(), memory.tile_pixels);
@@ -66,12 +82,10 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   recorder.dispatch(bounds_, bounds, 1);
   bounds.reset = 0;
   recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_BLOCKS);
-  const struct { std::uint32_t kind, bits, light_bits; } key{kind, layout.coordinate_bits, layout.light_bits};
-  recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
+  record_keys(recorder, context, kind);
 
   recorder.stage("compress");
-  const ScanPush scan{kind, layout.bits(),
-                      context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ? 2U : 1U};
+  const ScanPush scan{kind, layout.bits(), always_sorts(context) ? 2U : 1U};
   compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
   recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
 

@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "stages/intersect_brute.hpp"
 #include "stages/traverse_bundles.hpp"
+#include "stages/traverse_frustums.hpp"
 #include "stages/traverse_pairs.hpp"
 #include "stages/traverse_query.hpp"
 #include "stages/traverse_single.hpp"
@@ -25,6 +26,8 @@ std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {
     case Strategy::rsh:
     case Strategy::crsh:
       return std::make_unique<TraversePairs>(context);
+    case Strategy::frustum:
+      return std::make_unique<TraverseFrustums>(context);
     case Strategy::brute:
       return std::make_unique<IntersectBrute>(context);
     case Strategy::rayquery:

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Up to BUNDLE rays that a subgroup carries through a scene together: vectors of LANES rays each. At a leaf the lanes are first
+// vectors (a bound of each against the leaf's box), then the rays of the vectors that enter. Nodes and triangles are loaded once
+// for all rays, a pair of words a lane.
+layout(constant_id = 10) const uint LANES = 8;    // of a subgroup, which is the workgroup
+layout(constant_id = 11) const uint VECTORS = 8;  // BUNDLE / LANES
+#include "lanes.glsl"
+
+// A lane's ray of each vector.
+vec3 r_origin[VECTORS], r_inverse[VECTORS], r_shear[VECTORS];
+float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, −∞ once there is nothing more to find; r_end: far
+                                                      // limit of a shadow ray, or t where it is blocked
+uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
+ivec3 r_stops[VECTORS];
+Beam vector_beam;                                     // lane v: of vector v
+uint lane, ray_count, first_ray;
+uint vectors;                                         // that hold rays
+uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
+
+#include "bundle_queue.glsl"
+
+Extent extent_of(Extent mine) {
+  return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
+}
+
+Beam load_bundle() {
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
+    r_triangle[v] = NO_INDEX;
+    r_stops[v] = ivec3(0);
+    r_t[v] = -INFINITY;
+  }
+  vectors = (ray_count + LANES - 1u) / LANES;
+  Extent own = Extent(vec3(INFINITY), vec3(-INFINITY), vec3(INFINITY), vec3(-INFINITY), INFINITY);
+  float own_far = -INFINITY;
+  [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
+    uint k = v * LANES + lane;
+    uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
+    Ray ray = LOAD_RAY(rays, slot);
+    Shear s = make_shear(ray.origin, ray.direction);
+    float limit = k < ray_count ? ray.tmax : -INFINITY;
+    PUT(r_origin, v, s.origin);
+    PUT(r_inverse, v, s.inverse);
+    PUT(r_shear, v, vec3(s.sx, s.sy, s.sz));
+    PUT(r_axis, v, s.axis);
+    PUT(r_tmin, v, ray.tmin);
+    PUT(r_t, v, limit);
+    PUT(r_end, v, ray.tmax);
+    PUT(r_slot, v, slot);
+    Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
+    float far = max_lanes(limit);
+    if (lane == v % LANES) {
+      own = e;  // with more vectors than lanes the last wins: then vector_beam is not used
+      own_far = far;
+      vector_beam = make_beam(e, far);
+    }
+    if (VECTORS > LANES) {
+      own = Extent(min(own.olo, e.olo), max(own.ohi, e.ohi), min(own.ilo, e.ilo), max(own.ihi, e.ihi), min(own.tmin, e.tmin));
+      own_far = max(own_far, far);
+    }
+  }
+  if (VECTORS <= LANES && lane >= vectors) vector_beam.farthest = -INFINITY;
+  return make_beam(extent_of(own), max_lanes(own_far));
+}
+
+// Pairs of words that all lanes want, held a pair a lane, or two where there are but four lanes.
+struct Held {
+  uvec2 low, high;
+};
+
+#define HELD(h, k) (LANES < 8u && (k) >= 4u ? subgroupBroadcast((h).high, (k) & 3u) : subgroupBroadcast((h).low, (k)))
+
+Boxes load_boxes(uint node) {
+  NodePairs words = node_pairs(node);
+  Held h = Held(unpack32(words.pair[lane & 7u]), LANES < 8u ? unpack32(words.pair[4u + (lane & 3u)]) : uvec2(0));
+  return Boxes(unpack_grid(HELD(h, 0u), HELD(h, 1u)), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u), HELD(h, 5u), HELD(h, 6u), HELD(h, 7u));
+}
+
+Corners load_corners(uint triangle) {
+  TrianglePairs words = triangle_pairs(triangle);
+  Held h = Held(unpack32(words.pair[min(lane, 4u)]), LANES < 8u ? unpack32(words.pair[4]) : uvec2(0));
+  return unpack_triangle(HELD(h, 0u), HELD(h, 1u), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u));
+}
+
+// The rays of a vector at work.
+struct Work {
+  uint v;
+  Shear shear;
+  float tmin;
+  Nearest best;  // t −∞: nothing more to find
+  Shade shade;
+};
+
+void test_triangle(uint triangle, bool enters, inout Work w) {
+  Corners corners = load_corners(triangle);
+  Pending pending = NOTHING_PENDING;
+  if (enters && w.best.t > -INFINITY) {
+    ++triangle_tests;
+    if (ANY_HIT) {
+      consider_shadow_corners(corners, triangle, w.shear, w.tmin, w.best.t, w.shade, pending);
+      if (w.shade.blocked) w.best.t = -INFINITY;
+    } else {
+      consider_nearest_corners(corners, triangle, w.shear, w.tmin, w.best, pending);
+    }
+  }
+  if (asks_materials()) queue_pending(w.v, pending);
+}
+
+Work load_work(uint v) {
+  Work w;
+  vec3 shear;
+  w.v = v;
+  PICK(w.shear.origin, r_origin, v);
+  PICK(w.shear.inverse, r_inverse, v);
+  PICK(shear, r_shear, v);
+  PICK(w.shear.axis, r_axis, v);
+  PICK(w.tmin, r_tmin, v);
+  PICK(w.best.t, r_t, v);
+  w.shear.sx = shear.x;
+  w.shear.sy = shear.y;
+  w.shear.sz = shear.z;
+  w.shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
+  w.best.triangle = NO_INDEX;
+  if (!ANY_HIT) PICK(w.best.triangle, r_triangle, v);
+  return w;
+}
+
+void store_work(Work w) {
+  PUT(r_t, w.v, w.best.t);
+  if (!ANY_HIT) {
+    PUT(r_triangle, w.v, w.best.triangle);
+  } else if (w.shade.blocked) {
+    PUT(r_triangle, w.v, w.shade.triangle);
+    PUT(r_end, w.v, w.shade.t);
+  }
+  float far = max_lanes(w.best.t);
+  if (lane == w.v % LANES) vector_beam.farthest = far;
+}
+
+void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
+  Work w = load_work(v);
+  vec2 range = slab(w.shear, lo, hi);
+  bool enters = range.x <= range.y && range.y >= w.tmin && range.x <= w.best.t;
+  if (v * LANES + lane < ray_count) ++box_tests;
+  uint first = leaf_first(leaf), last = any_lane(enters) ? first + leaf_count(leaf) : first;
+  for (uint triangle = first; triangle < last; ++triangle) test_triangle(triangle, enters, w);
+  store_work(w);
+}
+
+void test_leaf(uint leaf, uint place) {
+  Boxes boxes = load_boxes(place / WIDE);
+  vec3 lo, hi;
+  child_box(boxes, place % WIDE, lo, hi);
+  uint todo = VECTORS > LANES ? (1u << vectors) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));
+  while (todo != 0u) {
+    test_vector(uint(findLSB(todo)), leaf, lo, hi);
+    todo &= todo - 1u;
+  }
+}
+
+float farthest_hit() {
+  float far = -INFINITY;
+  if (VECTORS <= LANES) return max_lanes(vector_beam.farthest);
+  [[unroll]] for (uint v = 0u; v < VECTORS; ++v) far = max(far, r_t[v]);
+  return max_lanes(far);
+}
+
+void store(uint v) {
+  uint slot, triangle;
+  float t;
+  PICK(slot, r_slot, v);
+  PICK(triangle, r_triangle, v);
+  if (ANY_HIT)
+    PICK(t, r_end, v)
+  else
+    PICK(t, r_t, v)
+  if (v * LANES + lane >= ray_count) return;
+  hits[slot] = triangle == NO_INDEX ? NO_HIT : pack_hit(t, triangle);
+  if (ANY_HIT && TRANSLUCENT) {
+    ivec3 sum;
+    PICK(sum, r_stops, v);
+    for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = sum[c];
+  }
+  if (PIXEL_COUNTED)
+    count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / VECTORS);
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Local intersection tests (S, R 3.4): one subgroup takes a packet's rays through the leaves listed for its cell, roughly front to
+// back. Lanes are leaves first: each is tested against what the packet's rays have left to find, so that what lies behind all
+// their hits costs no more than that.
+//
+// Exact: a leaf is left out by the slabs of beam.glsl alone.
+#define COMPUTE
+#include "common.glsl"
+#extension GL_EXT_control_flow_attributes : require
+#include "rays.glsl"
+#include "scene.glsl"
+#include "candidate.glsl"
+#include "results.glsl"
+#include "lists.glsl"
+#include "counting.glsl"
+#include "visit.glsl"
+#include "beam.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_PACKETS, readonly, uvec2, packets);
+BUFFER(ROLE_LISTS, readonly, uvec2, lists);
+BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
+BUFFER(ROLE_PAIR_LEVELS, coherent, uint, pair_levels);
+layout(push_constant) uniform Push {
+  uint kind;
+  uint room;   // pairs of a half
+  uint level;  // past the object hierarchy's
+} push;
+#include "bundle_rays.glsl"
+
+const uint LEAVES = LANES < 32u ? LANES : 32u;  // looked at together
+
+void place_box(uint place, out vec3 lo, out vec3 hi) {
+  NodePairs words = node_pairs(place / WIDE);
+  uint c = place % WIDE;
+  Grid grid = unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1]));
+  child_box(Boxes(grid, unpack32(words.pair[2]), unpack32(words.pair[3]), unpack32(words.pair[4]), unpack32(words.pair[5]),
+                  unpack32(words.pair[6]), unpack32(words.pair[7])), c, lo, hi);
+}
+
+uint place_child(uint place) {
+  uvec2 pair = unpack32(node_pairs(place / WIDE).pair[(NODE_CHILD + place % WIDE) / 2u]);
+  return (place & 1u) != 0u ? pair.y : pair.x;
+}
+
+void test_list(Beam beam, uvec2 list) {
+  for (uint base = list.x; base < list.y && beam.farthest > -INFINITY; base += LEAVES) {
+    uint mine = base + min(lane, LEAVES - 1u);
+    uint place = pairs[min(mine, list.y - 1u)].y & ~CHILD_LEAF, leaf = place_child(place);
+    vec3 lo, hi;
+    place_box(place, lo, hi);
+    bool there = lane < LEAVES && mine < list.y;
+    if (there) ++node_tests;
+    uint todo = lanes_where(there && beam_enters(beam, lo, hi));
+    while (todo != 0u) {
+      uint k = uint(findLSB(todo));
+      todo &= todo - 1u;
+      if (!queue_has_room()) settle_queue();
+      test_leaf(subgroupShuffle(leaf, k), subgroupShuffle(place, k));
+    }
+    beam.farthest = farthest_hit();
+  }
+  if (asks_materials()) settle_queue();
+}
+
+void main() {
+  if (global_group() >= counters[COUNT_WALK_CELLS]) return;
+  uint packet = counters[COUNT_WALK_FIRST] + global_group();
+  uvec2 own = packets[packet];
+  lane = gl_SubgroupInvocationID;
+  first_ray = own.x;
+  ray_count = packets[packet + 1u].x - own.x;
+  Beam beam = load_bundle();
+  uvec2 list = lists[own.y - counters[COUNT_WALK_FIRST]];
+  test_list(beam, list + counters[COUNT_PAIR_HALF] * push.room);
+  [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
+  uint sum = subgroupAdd(node_tests);
+  if (subgroupElect() && sum != 0u) atomicAdd(pair_levels[push.level], sum);
+  count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
+  count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
+  count_tests(push.kind, STAT_RAY_BOX, box_tests);
+  count_tests(push.kind, STAT_RAY_TRIANGLE, triangle_tests);
+}

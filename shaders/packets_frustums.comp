@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Frustum creation (S, R 3.4): one a packet, and its first pair, with the root of the object hierarchy.
+#define COMPUTE
+#include "common.glsl"
+#include "rays.glsl"
+#include "lists.glsl"
+#include "node.glsl"
+#include "triangle.glsl"
+#include "frustum_memory.glsl"
+BUFFER(ROLE_RAYS, readonly, float, rays);
+BUFFER(ROLE_ORDER, readonly, uint, order);
+BUFFER(ROLE_PACKETS, readonly, uvec2, packets);  // first ray, cell; one more at the end
+BUFFER(ROLE_PAIRS, writeonly, uvec2, pairs);
+BUFFER(ROLE_LISTS, writeonly, uvec2, lists);
+layout(push_constant) uniform Push { uvec2 frustums; } push;
+#include "hierarchy_box.glsl"
+
+void main() {
+  uint i = global_index();
+  if (i >= counters[COUNT_WALK_CELLS]) return;
+  uint packet = counters[COUNT_WALK_FIRST] + i, first = packets[packet].x, last = packets[packet + 1u].x;
+  vec3 lo, hi;
+  hierarchy_box(lo, hi);
+  Ray leader = LOAD_RAY(rays, order[first]);
+  Hull hull = begin_hull(leader.direction, lo, hi);
+  for (uint k = first; k < last; ++k) {
+    Ray r = LOAD_RAY(rays, order[k]);
+    add_extent(hull, r.origin, r.direction, r.tmin, r.tmax);
+  }
+  set_planes(hull);
+  for (uint k = first; k < last; ++k) {
+    Ray r = LOAD_RAY(rays, order[k]);
+    add_places(hull, r.origin, r.direction);
+  }
+  store_frustum(push.frustums, i, end_hull(hull, octant_of(leader.direction)));
+  pairs[i] = uvec2(i, 0u);
+  lists[i] = uvec2(0);
+}
