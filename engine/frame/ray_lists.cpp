@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;        // accumulation, visibility, output and its read-back
 constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;  // keys, kept order, chunks twice, skeleton, digit counts
-constexpr std::uint64_t packet_bytes = 4 + 8;  // key, and at worst a packet of its own
+constexpr std::uint64_t packet_bytes = 4 + 8;                 // key, and at worst a packet of its own
 constexpr std::uint32_t least_capacity = 1024;
 
 std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {

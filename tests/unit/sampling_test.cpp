@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Where samples lie, and who gets more of them.
-#include "sampling/pixel_samples.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "sampling/adaptive_pixels.hpp"
+#include "sampling/pixel_samples.hpp"
 
 namespace sheaf {
 namespace {
@@ -65,7 +64,8 @@ TEST(Sampling, OffsetsFollowTheFilter) {
   }
 }
 
-// The error of an edge through a pixel falls as n^-3/4 (a stratified set's best in the plane); random points give n^-1/2.
+// The error of an edge through a pixel falls as n^-3/4 (a stratified set's best in the plane); random points give
+// n^-1/2.
 TEST(Sampling, EdgesConvergeAtTheRateOfANet) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
