@@ -29,8 +29,8 @@ struct Quality {
 /// On the front of error against time, as `sheaf-client report` finds it.
 inline constexpr std::array<Quality, 3> qualities{{
     {"draft", {1, {}}, 2, 0.02F},
-    {"production", {64, 0.02}, 6, 0.002F},
-    {"exact", {1024, 0.002}, 32, 0.0F},
+    {"production", {256, 0.02}, 6, 0.002F},
+    {"exact", {1024, 0.005}, 32, 0.0F},
 }};
 inline constexpr Quality default_quality{"", {1, {}}, 4, 0.002F};
 
