@@ -85,7 +85,7 @@ void apply(const Given& given, ProgramOptions& options) {
   options.http.timeouts.read = milliseconds(given.read_timeout_s);
   options.http.timeouts.write = milliseconds(given.read_timeout_s);
   options.http.timeouts.head = milliseconds(given.head_timeout_s);
-  options.service.most_inspections = std::max<std::size_t>(1, options.http.pool.threads / 2);
+  options.service.most_submissions = std::max<std::size_t>(1, options.http.pool.threads / 2);
   options.heartbeat = milliseconds(given.heartbeat_s);
   options.service.least_free_bytes = given.free_mib << 20;
   RunnerOptions& runner = options.service.runner;

@@ -15,6 +15,10 @@ namespace {
 constexpr auto janitor_interval = std::chrono::seconds(1);
 constexpr std::size_t inspections_at_once = 4;  // each may take a worker's memory
 
+[[noreturn]] void refuse_busy() {
+  throw Problem(ProblemKind::busy, "many scenes are being looked into already").header("Retry-After", "1");
+}
+
 }  // namespace
 
 JobService::JobService(ServiceOptions options, JobStore& store, const JobFiles& files)
@@ -22,8 +26,7 @@ JobService::JobService(ServiceOptions options, JobStore& store, const JobFiles& 
       store_(store),
       files_(files),
       runner_(options_.runner, store, files, counters_),
-      inspector_(options_.runner.sheaf, options_.runner.confinement, options_.limits, inspections_at_once,
-                 options_.most_inspections) {
+      inspector_(options_.runner.sheaf, options_.runner.confinement, options_.limits, inspections_at_once) {
   queue_ =
       std::make_unique<JobQueue>(runner_, options_.jobs_at_once, [this](const std::string& id) { worker_gone(id); });
   janitor_ = std::thread([this] {
@@ -51,6 +54,20 @@ void JobService::shut_down() {
 }
 
 void JobService::check_capacity() const {
+  check_room();
+  if (places_taken_ >= options_.most_submissions) refuse_busy();
+}
+
+JobService::Place JobService::take_place(const Job& job) {
+  const std::size_t others = places_taken_++;
+  Place place(nullptr, [this](std::nullptr_t) { --places_taken_; });
+  if (others < options_.most_submissions) return place;
+  files_.remove(job.id);
+  refuse_busy();
+}
+
+/// Whether the queue and the disk have room for a job.
+void JobService::check_room() const {
   if (stopping_) throw Problem(ProblemKind::shutting_down, "no new job is taken").header("Retry-After", "5");
   const std::uint64_t waiting = queue_->waiting();
   if (waiting >= options_.limits.queued_jobs)
@@ -129,7 +146,7 @@ Submitted JobService::submit(Job job, const Idempotency& idempotency, const std:
   const std::string id = job.id;
   Submitted submitted;
   try {
-    check_capacity();
+    check_room();
     files_.accept(id);
     submitted = store_.insert(std::move(job), idempotency);
   } catch (...) {

@@ -23,7 +23,7 @@ struct ServiceOptions {
   std::uint64_t kept_bytes = 0;  // of all jobs: beyond it, ended ones go, the earliest first; 0: no limit
   Limits limits;
   std::size_t jobs_at_once = 1;
-  std::size_t most_inspections = 16;  // scenes that are looked into or wait for that, each on a thread for requests
+  std::size_t most_submissions = 16;  // that are looked into and stored, each on a thread for requests
   std::uint64_t least_free_bytes = std::uint64_t{256} << 20;  // no new job is taken with less disk than this
 };
 
@@ -34,8 +34,15 @@ class JobService {
   JobService(const JobService&) = delete;
   JobService& operator=(const JobService&) = delete;
 
-  /// Throws Problem (503) if no job can be taken now: asked before an upload is read, and again at its end.
+  /// Throws Problem (503) if no job can be taken now: asked before an upload is read, so that none is read in vain, and
+  /// again at its end.
   void check_capacity() const;
+
+  /// To be held from an upload's end until its answer: looking into a scene and syncing it keep a thread waiting, and
+  /// a bounded number of them leaves threads for requests that wait for nothing. Throws Problem (503); then the upload
+  /// that was received under `job.id` is gone.
+  using Place = std::shared_ptr<void>;
+  [[nodiscard]] Place take_place(const Job& job);
 
   /// "ok" or the reason why no job should be sent here. What failed once must be well again by a margin: a service at
   /// its limit does not change its mind with every job.
@@ -78,6 +85,7 @@ class JobService {
   [[nodiscard]] bool stopping() const { return stopping_; }
 
  private:
+  void check_room() const;
   bool ask_to_stop(Job& job, NewEvents& events);
   bool take_up(const std::string& id);
   [[noreturn]] void refuse_missing(const std::string& id) const;
@@ -91,6 +99,7 @@ class JobService {
   Counters counters_;
   JobRunner runner_;
   SceneInspector inspector_;
+  std::atomic<std::size_t> places_taken_{0};
   std::atomic<bool> stopping_{false}, queue_was_full_{false}, disk_was_low_{false};
   std::mutex mutex_;
   std::condition_variable stopped_;

@@ -66,19 +66,13 @@ SceneInspector::Found SceneInspector::inspect(const std::filesystem::path& folde
 /// Given back at its end.
 SceneInspector::Turn SceneInspector::wait_for_turn() {
   std::unique_lock lock(mutex_);
-  if (places_ == 0)
-    throw Problem(ProblemKind::busy, "many scenes are being looked into already").header("Retry-After", "1");
-  --places_;
   freed_.wait(lock, [this] { return free_ > 0 || stop_.asked(); });
-  if (stop_.asked()) {
-    ++places_;
-    refuse_stopping();
-  }
+  if (stop_.asked()) refuse_stopping();
   --free_;
   return {this, [this](void*) {
             {
               const std::lock_guard again(mutex_);
-              ++free_, ++places_;
+              ++free_;
             }
             freed_.notify_one();
           }};

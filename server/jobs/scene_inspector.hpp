@@ -20,17 +20,12 @@ namespace sheaf::server {
 
 class SceneInspector {
  public:
-  /// `at_once` may run at a time and as many as `most` be there, running or waiting, for each holds a thread.
-  SceneInspector(std::string sheaf, ConfinementOptions confinement, Limits limits, std::size_t at_once,
-                 std::size_t most)
-      : sheaf_(std::move(sheaf)),
-        confinement_(std::move(confinement)),
-        limits_(limits),
-        free_(at_once),
-        places_(most) {}
+  /// `at_once` may run at a time, others wait.
+  SceneInspector(std::string sheaf, ConfinementOptions confinement, Limits limits, std::size_t at_once)
+      : sheaf_(std::move(sheaf)), confinement_(std::move(confinement)), limits_(limits), free_(at_once) {}
 
   /// `scene` lies in `folder`, an upload's own; `arguments` are those that its job will be rendered with. Throws
-  /// Problem: 422 with the limit's name, the limit and the value; 503 when too many are there, and once interrupted.
+  /// Problem: 422 with the limit's name, the limit and the value; 503 once interrupted.
   void check(const std::filesystem::path& folder, const std::filesystem::path& scene,
              const std::vector<std::string>& arguments);
 
@@ -50,7 +45,7 @@ class SceneInspector {
   StopSwitch stop_;
   std::mutex mutex_;
   std::condition_variable freed_;
-  std::size_t free_, places_;
+  std::size_t free_;
 };
 
 }  // namespace sheaf::server

@@ -27,6 +27,7 @@ Reply submit(RouteContext& context, Request& request) {
   context.service.check_capacity();
   Submission submission =
       receive_submission(random_id(), request, context.service.files(), context.service.options().limits);
+  const JobService::Place place = context.service.take_place(submission.job);
   context.service.inspect(submission.job);
   const Submitted submitted =
       context.service.submit(std::move(submission.job), {key, submission.fingerprint}, request.id);

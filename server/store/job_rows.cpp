@@ -21,6 +21,7 @@ constexpr const char* tables[] = {
     " fingerprint TEXT, finished INTEGER, expires INTEGER, bytes INTEGER NOT NULL)",
     "CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, sequence)",
     "CREATE INDEX IF NOT EXISTS jobs_by_expiry ON jobs (expires)",
+    "CREATE INDEX IF NOT EXISTS jobs_by_end ON jobs (finished, bytes)",  // sums and orders without reading records
     "CREATE TABLE IF NOT EXISTS frames (job INTEGER NOT NULL, number INTEGER NOT NULL, wall_ms REAL NOT NULL,"
     " exr TEXT NOT NULL, exr_bytes INTEGER NOT NULL, exr_crc32 INTEGER NOT NULL, exr_sha256 TEXT NOT NULL,"
     " png TEXT, png_bytes INTEGER, png_crc32 INTEGER, png_sha256 TEXT, PRIMARY KEY (job, number)) WITHOUT ROWID",

@@ -71,13 +71,17 @@ Submitted SqliteJobStore::insert(Job job, const Idempotency& idempotency) {
 
 std::optional<Job> SqliteJobStore::find(const std::string& id) const {
   std::uint64_t removals = 0;
+  JobPtr known;
   {
     const std::lock_guard shown(shown_);
-    if (const auto found = active_.find(id); found != active_.end()) return *found->second.job;
-    for (const JobPtr& job : recent_)
-      if (job->id == id) return *job;
+    if (const auto found = active_.find(id); found != active_.end())
+      known = found->second.job;
+    else if (const auto recent = std::ranges::find(recent_, id, [](const JobPtr& job) { return job->id; });
+             recent != recent_.end())
+      known = *recent;
     removals = removals_;
   }
+  if (known) return *known;  // copied while nobody waits: a job may have very many frames
   std::optional<Job> job;
   {
     const std::lock_guard reading(reading_);

@@ -139,6 +139,41 @@ def test_a_service_that_stops_does_not_wait_for_a_scene(start: Callable[..., Ser
             assert service.stop() == 0
 
 
+ASKING = b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
+
+
+def refusal_before_the_body(service: Service) -> dict:
+    """The problem that answers a head whose body is never sent; a service that wants to read it says 100 first."""
+    answer = service.raw(ASKING + b"Content-Length: 1000000\r\n\r\n")
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 503 ") and b"Retry-After: " in head, answer
+    return json.loads(body)
+
+
+def test_no_upload_is_read_in_vain(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--http-threads", "2")  # so that one scene may be looked into
+    host, port = service.address.rsplit(":", 1)
+    body = b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n'
+    body += gltf(inspect_gate=gate.path) + b"\r\n--b--\r\n"
+    with socket.create_connection((host, int(port)), PATIENCE) as connection:
+        head = ASKING.replace(b"Expect: 100-continue", b"Connection: close")
+        connection.sendall(head + b"Content-Length: %d\r\n\r\n" % len(body) + body)
+        with open(gate.path, "wb"):  # once the inspection waits there
+            assert refusal_before_the_body(service)["type"].endswith("busy")
+            assert service.http.get("/v1/jobs").json()["jobs"] == []
+        assert connection.recv(65536).startswith(b"HTTP/1.1 202 ")
+
+
+def test_a_full_queue_reads_no_upload(start: Callable[..., Service], gate: Gate) -> None:
+    service = start("--max-queue", "1")
+    running = service.accepted(gltf(gates={"0": gate.path}))
+    service.wait(running, "running")
+    service.accepted(gltf())
+    assert refusal_before_the_body(service)["type"].endswith("queue-full")
+    gate.open()
+    service.wait(running)
+
+
 def textured(side: int) -> bytes:
     """A triangle with a picture of so many pixels along a side."""
 
