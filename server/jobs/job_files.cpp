@@ -7,7 +7,9 @@
 #include <zlib.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <vector>
 
 #include "core/error.hpp"
@@ -45,6 +47,20 @@ void sync_tree(const fs::path& folder) {
   sync(folder, O_DIRECTORY);
 }
 
+// A killed service's workers die with it, but not in the same instant, and what they were forked with holds the lock as long.
+bool lock_patiently(int fd) {
+  constexpr std::chrono::seconds patience(5);
+  constexpr std::chrono::milliseconds look(20);
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
+  write_log(LogLevel::info, "waiting for the data folder", {{"seconds", patience.count()}});
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(look);
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 JobFiles::JobFiles(fs::path data) : data_(fs::absolute(std::move(data))) {
@@ -52,8 +68,7 @@ JobFiles::JobFiles(fs::path data) : data_(fs::absolute(std::move(data))) {
   const fs::path lock = data_ / "lock";
   lock_ = Fd(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (!lock_.valid()) throw io_error(lock.string(), std::strerror(errno));
-  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
-    throw io_error(data_.string(), "another sheafd uses this data folder");
+  if (!lock_patiently(lock_.get())) throw io_error(data_.string(), "another sheafd uses this data folder");
   std::error_code ignored;
   fs::remove_all(data_ / "incoming", ignored);
   make_folder(data_ / "incoming");
