@@ -16,6 +16,7 @@ Beam vector_beam;                                     // lane v: of vector v
 uint lane, ray_count, first_ray;
 uint vectors;                                         // that hold rays
 uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
+uint effort = 0u;                                     // nodes and vectors looked at; the same in all lanes
 
 #include "bundle_queue.glsl"
 
@@ -153,6 +154,7 @@ void test_leaf(uint leaf, uint place) {
   uint todo = VECTORS > LANES ? (1u << vectors) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));
   while (todo != 0u) {
     test_vector(uint(findLSB(todo)), leaf, lo, hi);
+    ++effort;
     todo &= todo - 1u;
   }
 }

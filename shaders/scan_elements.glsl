@@ -9,7 +9,6 @@
 layout(push_constant) uniform Push {
   uint kind;
   uint key_bits;
-  uint policy;   // of sorting: 0 off, 1 auto, 2 on
 } push;
 
 #if defined(SCAN_COMPACT)
@@ -42,15 +41,9 @@ void scan_store(uint i, uint before, uint own) {
     chunks[before].y = i;
   }
 }
-// Sorting pays where neighbours in pixel order are not neighbours in ray space: more than one change of key in a run of 16.
 void scan_total(uint total) {
-  uint rays = scan_count();
-  bool sorted = push.policy == 2u || (push.policy == 1u && total > rays / 16u && rays > 2u * BUNDLE);
   counters[COUNT_CHUNKS] = total;
-  counters[COUNT_SORT] = sorted ? 1u : 0u;
-  set_args(ARGS_CHUNKS, sorted ? groups_of(total, SCAN_BLOCK) : 0u);
-  set_args(ARGS_SORTED, sorted ? groups_of(rays, SCAN_BLOCK) : 0u);
-  set_args(ARGS_SORT_SPINE, sorted ? 1u : 0u);
+  set_args(ARGS_CHUNKS, groups_of(total, SCAN_BLOCK));
 }
 #elif defined(SCAN_STARTS)
 // Sizes of the sorted chunks → where each starts; its base is set into the skeleton as a head (R 4.2, Decompression).

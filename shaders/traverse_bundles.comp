@@ -20,8 +20,12 @@
 BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
-BUFFER(ROLE_WORK, readonly, uint, work);
-layout(push_constant) uniform Push { uint kind; } push;
+BUFFER(ROLE_WORK, coherent, uint, work);
+BUFFER(ROLE_ARGS, coherent, uint, args);
+layout(push_constant) uniform Push {
+  uint kind;
+  uint most_effort;
+} push;
 
 #include "bundle_rays.glsl"
 
@@ -48,6 +52,7 @@ void walk(Beam beam, Cone cone) {
   while (current != CHILD_EMPTY) {
     while (current != CHILD_EMPTY && queue_has_room()) {
       while (is_node(current)) {
+        if (++effort > push.most_effort) return;
         visit_children(visit, current, entered_children(beam, cone, current) & 255u);
         current = next_child(visit, place);
       }
@@ -62,6 +67,16 @@ void walk(Beam beam, Cone cone) {
   }
 }
 
+// The bundle joins those whose rays go alone. What it found is found again there.
+void give_up(uint bundle) {
+  if (lane == 0u) {
+    uint loose = atomicAdd(counters[COUNT_LOOSE], 1u);
+    work[loose] = bundle;
+    atomicMax(args[3u * ARGS_LOOSE], min(loose + 1u, 32768u));
+    atomicMax(args[3u * ARGS_LOOSE + 1u], loose / 32768u + 1u);
+  }
+}
+
 void main() {
   if (global_group() >= counters[COUNT_TIGHT]) return;
   uint rays_here = counters[COUNT_RAYS + push.kind];
@@ -73,7 +88,10 @@ void main() {
   visit = Visit(0u, 0u, octant_of(node.axis));
   Beam beam = load_bundle();
   walk(beam, cone_of(node));
-  [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
+  if (effort > push.most_effort)
+    give_up(bundle);
+  else
+    [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
   count_tests(push.kind, STAT_RAY_BOX, box_tests);

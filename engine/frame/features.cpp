@@ -135,12 +135,15 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   plan.packets = strategy == Strategy::frustum;
   if (!plan.ray_hierarchy && !plan.packets)
     leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
-  plan.sorts = (strategy == Strategy::hybrid || strategy == Strategy::crsh || strategy == Strategy::frustum) &&
-               settings.sort != SortPolicy::off;
+  const bool by_key = strategy == Strategy::crsh || strategy == Strategy::frustum;
+  plan.bundles = strategy == Strategy::hybrid;
+  plan.sorts = (by_key && settings.sort != SortPolicy::off) || (plan.bundles && settings.sort == SortPolicy::on);
   if (!plan.sorts)
-    leave("sort", settings.sort == SortPolicy::off && traced
-                      ? "--sort off"
-                      : std::string("strategy ") + name_of(strategy) + " does not sort");
+    leave("sort",
+          settings.sort == SortPolicy::off && traced ? "--sort off"
+          : plan.bundles
+              ? "bundles of neighbouring pixels are about as tight, and sorting costs more than it saves; see --sort on"
+              : std::string("strategy ") + name_of(strategy) + " does not sort");
   plan.spheres = strategy == Strategy::rsh || strategy == Strategy::crsh;
   return plan;
 }

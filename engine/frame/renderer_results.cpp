@@ -15,6 +15,12 @@ void add_levels(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t
   for (std::size_t below = 1; below <= more.size(); ++below) sum[sum.size() - below] += more[more.size() - below];
 }
 
+const char* why_sorted(const Plan& plan, const RenderSettings& settings, std::uint32_t kind) {
+  if (!plan.sorts) return "left out";
+  if (kind == gpu::KIND_PRIMARY) return "camera rays are in order";
+  return settings.sort == SortPolicy::on ? "--sort on" : "the strategy sorts";
+}
+
 }  // namespace
 
 void Renderer::collect_generations(RenderedFrame& out) {
@@ -32,21 +38,22 @@ void Renderer::collect_generations(RenderedFrame& out) {
       found = std::prev(out.stats.generations.end());
       found->index = generation;
       found->kind = static_cast<RayKind>(kind);
-      found->sort_reason = plan_.sorts ? "key changes in less than one ray of sixteen" : "strategy or --sort off";
     }
     found->rays += counters[gpu::COUNT_RAYS + kind];
     add_levels(found->pairs_per_level, record_pairs_[r]);
-    if (!plan_.sorts || kind == gpu::KIND_PRIMARY) continue;
+    if (plan_.bundles) {
+      const std::uint32_t bundles = (counters[gpu::COUNT_RAYS + kind] + gpu::BUNDLE - 1) / gpu::BUNDLE;
+      found->nodes += bundles;
+      found->tight += bundles - counters[gpu::COUNT_LOOSE];
+    } else if (plan_.packets) {
+      found->nodes += counters[gpu::COUNT_CELLS];
+    }
+    found->sorted = plan_.sorts && kind != gpu::KIND_PRIMARY;
+    found->sort_reason = why_sorted(plan_, settings_, kind);
+    if (!found->sorted) continue;
     const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
     found->key_bits = layout.bits();
     found->chunks += counters[gpu::COUNT_CHUNKS];
-    found->nodes += counters[gpu::COUNT_TIGHT] + counters[gpu::COUNT_LOOSE] + counters[gpu::COUNT_CELLS];
-    found->tight += counters[gpu::COUNT_TIGHT];
-    if (counters[gpu::COUNT_SORT] != 0) {
-      found->sorted = true;
-      found->sort_reason =
-          settings_.sort == SortPolicy::on ? "--sort on" : "key changes in more than one ray of sixteen";
-    }
   }
 }
 

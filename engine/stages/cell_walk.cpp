@@ -74,7 +74,7 @@ void CellWalk::open_level(Recorder& recorder, std::uint32_t kind, std::uint32_t 
     std::uint32_t kind, half_read, room, level, ray_level;
   } push{frustums_at(), kind, half_read, pair_room_, level, ray_level};
   recorder.dispatch_indirect(open_, push, gpu::ARGS_PAIRS);
-  compact_.record(recorder, {half_read, pair_room_, 0}, gpu::ARGS_PAIR_BLOCKS, gpu::ARGS_PAIR_SCATTER);
+  compact_.record(recorder, {half_read, pair_room_}, gpu::ARGS_PAIR_BLOCKS, gpu::ARGS_PAIR_SCATTER);
 }
 
 void CellWalk::intersect(Recorder& recorder, std::uint32_t kind, std::uint32_t level) {

@@ -11,7 +11,7 @@
 namespace sheaf {
 
 struct ScanPush {
-  std::uint32_t kind = 0, key_bits = 0, policy = 0;
+  std::uint32_t kind = 0, key_bits = 0;
 };
 
 class Scan {

@@ -5,15 +5,6 @@
 #include <bit>
 
 namespace sheaf {
-namespace {
-
-bool always_sorts(const TraceContext& context) {  // as published
-  return context.settings.sort == SortPolicy::on || context.strategy == Strategy::crsh ||
-         context.strategy == Strategy::frustum;
-}
-
-}  // namespace
-
 KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays) {
   const auto log2 = static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(rays, 1)));
   KeyLayout layout;
@@ -51,7 +42,7 @@ bool SortRays::record_passes(Recorder& recorder, const RayMemory& memory, std::u
     recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
     recorder.bind(ROLE_CHUNKS_ALT, in_alt ? memory.chunks : memory.chunks_alt);
     recorder.dispatch_indirect(count_, shift, gpu::ARGS_CHUNKS);
-    recorder.dispatch_indirect(spine_, shift, gpu::ARGS_SORT_SPINE);
+    recorder.dispatch_indirect(spine_, shift, gpu::ARGS_ONE);
     recorder.dispatch_indirect(scatter_, shift, gpu::ARGS_CHUNKS);
   }
   recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
@@ -85,7 +76,7 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   record_keys(recorder, context, kind);
 
   recorder.stage("compress");
-  const ScanPush scan{kind, layout.bits(), always_sorts(context) ? 2U : 1U};
+  const ScanPush scan{kind, layout.bits()};
   compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
   recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
 
@@ -93,9 +84,9 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   (void)record_passes(recorder, memory, layout.bits());
 
   recorder.stage("decompress");
-  recorder.dispatch_indirect(fill_, kind, gpu::ARGS_SORTED);
+  recorder.dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);
   starts_.record(recorder, scan, gpu::ARGS_CHUNKS);
-  segmented_.record(recorder, scan, gpu::ARGS_SORTED);
+  segmented_.record(recorder, scan, gpu::ARGS_BLOCKS);
   context.scene.bind(recorder);  // SCAN_OUT was lent to the kept order
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hash, compress, sort, decompress (R 4.2, S): brings a list's order into ray space. Whether a batch is worth it is
-// settled on the device from its chunks per ray; a batch that is not keeps its order and skips the later stages.
+// Hash, compress, sort, decompress (R 4.2, S): brings a list's order into ray space. A plan without it keeps
+// the order of the pixels (`Plan::sorts`).
 #pragma once
 
 #include "stages/scan.hpp"

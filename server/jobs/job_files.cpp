@@ -47,7 +47,8 @@ void sync_tree(const fs::path& folder) {
   sync(folder, O_DIRECTORY);
 }
 
-// A killed service's workers die with it, but not in the same instant, and what they were forked with holds the lock as long.
+// A killed service's workers die with it, but not in the same instant, and what they were forked with holds the lock as
+// long.
 bool lock_patiently(int fd) {
   constexpr std::chrono::seconds patience(5);
   constexpr std::chrono::milliseconds look(20);

@@ -79,15 +79,15 @@ class Chain {
     for (const auto* scratch : {&m.chunks, &m.chunks_alt, &m.skeleton, &m.order_kept, &m.digits})
       r.fill(*scratch, 0xEEEEEEEEU);
   }
-  void compress(std::uint32_t policy) {
-    compress_.record(world_.recorder(), {kind, 32, policy}, gpu::ARGS_BLOCKS);
+  void compress() {
+    compress_.record(world_.recorder(), {kind, 32}, gpu::ARGS_BLOCKS);
     world_.recorder().dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
   }
   void sort(std::uint32_t bits) { in_alt_ = sort_.record_passes(world_.recorder(), world_.memory(), bits); }
   void decompress() {
-    world_.recorder().dispatch_indirect(fill_, kind, gpu::ARGS_SORTED);
-    starts_.record(world_.recorder(), {kind, 32, 2}, gpu::ARGS_CHUNKS);
-    segmented_.record(world_.recorder(), {kind, 32, 2}, gpu::ARGS_SORTED);
+    world_.recorder().dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);
+    starts_.record(world_.recorder(), {kind, 32}, gpu::ARGS_CHUNKS);
+    segmented_.record(world_.recorder(), {kind, 32}, gpu::ARGS_BLOCKS);
   }
 
   std::uint32_t counter(std::uint32_t index) {
@@ -148,7 +148,7 @@ TEST(DeviceSort, EveryStageEqualsItsSerialVersion) {
         auto expected = serial_chunks(keys);
         chain.resize(n);
         chain.load(keys, order);
-        chain.compress(2);
+        chain.compress();
         chain.sort(0);
         ASSERT_EQ(chain.counter(gpu::COUNT_CHUNKS), expected.size());
         ASSERT_TRUE(chain.chunks(expected.size()) == expected) << "compression";
@@ -168,36 +168,11 @@ TEST(DeviceSort, MemoryOfExactlyTheRaysIsEnough) {
     const Words order = some_order(n);
     for (const auto& [name, keys] : patterns) {
       chain.load(keys, order);
-      chain.compress(2);
+      chain.compress();
       chain.sort(32);
       chain.decompress();
       ASSERT_EQ(chain.order(), stable_order(keys, order)) << name << ' ' << n;
     }
-  }
-}
-
-// `auto` sorts what changes its key more than once in 16 rays, and never a handful of rays; `off` leaves everything
-// alone.
-TEST(DeviceSort, LeavesTheOrderAloneWhereSortingDoesNotPay) {
-  struct Case {
-    std::uint32_t rays, run, policy;  // run: rays a key
-    bool sorted;
-  };
-  const Case cases[] = {{4096, 1, 1, true},  {4096, 15, 1, true}, {4096, 17, 1, false}, {4096, 64, 1, false},
-                        {4096, 64, 2, true}, {4096, 1, 0, false}, {128, 1, 1, false},   {129, 1, 1, true},
-                        {1, 1, 2, true},     {0, 1, 2, true},     {128, 1, 2, true}};
-  Chain chain(0, 4096);
-  for (const auto& c : cases) {
-    Words keys(c.rays);
-    for (std::uint32_t i = 0; i < c.rays; ++i) keys[i] = (c.rays - i) / c.run;
-    const Words order = some_order(c.rays);
-    chain.resize(c.rays);
-    chain.load(keys, order);
-    chain.compress(c.policy);
-    chain.sort(32);
-    chain.decompress();
-    EXPECT_EQ(chain.counter(gpu::COUNT_SORT), c.sorted ? 1 : 0) << c.rays << " rays in runs of " << c.run;
-    EXPECT_EQ(chain.order(), c.sorted ? stable_order(keys, order) : order) << c.rays << " rays in runs of " << c.run;
   }
 }
 
