@@ -60,7 +60,7 @@ struct Service::Parts {
         store((files.data() / database_name).string()),
         jobs(given.service, store, files),
         streams(given.streams),
-        device(given.service.runner.sheaf),
+        device(given.service.runner.sheaf, given.service.runner.confinement, jobs.counters().devices_missed),
         context{jobs,
                 streams,
                 metrics,

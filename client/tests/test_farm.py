@@ -20,6 +20,7 @@ from sheaf import farm
 from sheaf.cli import main
 from sheaf.farm._render import _Run
 from sheaf.farm._task import Order, Piece, Report, render_chunk
+from sheaf.farm._workers import Workers
 
 # Dask's own sockets and loops are not always closed when it says so.
 pytestmark = pytest.mark.filterwarnings("default")
@@ -84,6 +85,30 @@ def alone(scene: Path, folder: Path, frames: list[int]) -> dict[str, bytes]:
 
 def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+class CountingCluster:
+    """Counts how often it is asked for its workers."""
+
+    def __init__(self) -> None:
+        self.asked, self.workers = 0, {"tcp://a:1": 1}
+
+    def nthreads(self) -> dict[str, int]:
+        self.asked += 1
+        return dict(self.workers)
+
+
+def test_the_scheduler_is_asked_for_its_workers_once_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    cluster, now = CountingCluster(), 100.0
+    monkeypatch.setattr("sheaf.farm._workers.time.monotonic", lambda: now)
+    workers = Workers(cluster)  # type: ignore[arg-type]
+    assert [len(workers) for _ in range(1000)] == [1] * 1000
+    assert cluster.asked == 1
+    cluster.workers = {}
+    now += 1.0
+    assert workers.addresses() == ()
+    assert len(workers) == 1
+    assert cluster.asked == 2
 
 
 @pytest.mark.parametrize("shared", [False, True])

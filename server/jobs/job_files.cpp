@@ -2,14 +2,11 @@
 #include "jobs/job_files.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <zlib.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
 #include <vector>
 
 #include "core/error.hpp"
@@ -47,21 +44,6 @@ void sync_tree(const fs::path& folder) {
   sync(folder, O_DIRECTORY);
 }
 
-// A killed service's workers die with it, but not in the same instant, and what they were forked with holds the lock as
-// long.
-bool lock_patiently(int fd) {
-  constexpr std::chrono::seconds patience(5);
-  constexpr std::chrono::milliseconds look(20);
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
-  write_log(LogLevel::info, "waiting for the data folder", {{"seconds", patience.count()}});
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(look);
-    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 JobFiles::JobFiles(fs::path data) : data_(fs::absolute(std::move(data))) {
@@ -69,7 +51,12 @@ JobFiles::JobFiles(fs::path data) : data_(fs::absolute(std::move(data))) {
   const fs::path lock = data_ / "lock";
   lock_ = Fd(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (!lock_.valid()) throw io_error(lock.string(), std::strerror(errno));
-  if (!lock_patiently(lock_.get())) throw io_error(data_.string(), "another sheafd uses this data folder");
+  // A record lock: forked children do not have it, so that a killed service's lock is gone with it, whatever a child
+  // that had not come to its exec yet still holds open.
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  if (::fcntl(lock_.get(), F_SETLK, &whole) != 0)
+    throw io_error(data_.string(), "another sheafd uses this data folder");
   std::error_code ignored;
   fs::remove_all(data_ / "incoming", ignored);
   make_folder(data_ / "incoming");

@@ -16,6 +16,8 @@ std::uint64_t missing_frames(const Job& job) {
   return wanted > job.frames_done ? wanted - job.frames_done : 0;
 }
 
+constexpr int exit_no_device = 4;  // `sheaf`: no usable device, or it was lost
+
 enum class Next { ended, queued, again };
 
 }  // namespace
@@ -79,6 +81,7 @@ bool JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
   if (job.starts > 1) verify_frames(store_, files_, job.id);
   ++counters_.worker_starts;
   Ending ending = run_worker_of(job, stop);
+  if (ending.worker.exit_code == exit_no_device) ++counters_.devices_missed;
   counters_.work.add(files_.stats(job.id));
   if (ending.worker.exit_code != 0) adopt_frames(store_, files_, job.id);
 

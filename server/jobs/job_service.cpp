@@ -117,13 +117,17 @@ void JobService::recover(bool fresh) {
 bool JobService::take_up(const std::string& id) {
   bool wanted = false;
   const std::optional<Job> job = store_.find(id);
+  if (!job) return false;
   std::error_code error;
-  const bool whole = job && std::filesystem::exists(files_.scene(id) / job->scene_file, error);
+  const bool whole = std::filesystem::exists(files_.scene(id) / job->scene_file, error);
+  const bool tired = job->fruitless_starts >= options_.runner.attempts;
+  // Nothing to be written: a sync for each would keep a service with a long queue from answering.
+  if (job->state == JobState::queued && !job->cancel_requested && whole && !tired) return true;
   const std::chrono::seconds retention = options_.runner.retention;
   store_.update(id, [&](Job& stored, NewEvents& events) {
     if (stored.cancel_requested) return finish_job(stored, events, JobState::cancelled, std::nullopt, retention);
     if (!whole) return finish_job(stored, events, JobState::failed, outcome_of_lost_files().failure, retention);
-    if (stored.fruitless_starts >= options_.runner.attempts)
+    if (tired)
       return finish_job(stored, events, JobState::failed, outcome_of_too_many_starts(stored.fruitless_starts).failure,
                         retention);
     wanted = true;

@@ -86,6 +86,8 @@ void write_jobs(Text& text, const JobService& service) {
   text.single("worker_starts_total", "counter", "Workers started since the start.", counters.worker_starts.load());
   text.single("worker_retries_total", "counter", "Workers that were started again after an end from outside.",
               counters.workers_tried_again.load());
+  text.single("workers_without_device_total", "counter", "Workers that had no usable device, or lost it.",
+              counters.devices_missed.load());
   text.single("queue_age_seconds", "gauge", "How long ago the next job was submitted; 0 if none waits.",
               queue_age(service));
   text.single("queue_waiting", "gauge", "Jobs that wait for a worker.", service.queue().waiting());

@@ -13,7 +13,8 @@ constexpr std::size_t max_reason = 500;
 
 }  // namespace
 
-DeviceProbe::DeviceProbe(std::string sheaf) : sheaf_(std::move(sheaf)), thread_([this] { watch(); }) {}
+DeviceProbe::DeviceProbe(std::string sheaf, ConfinementOptions confinement, const std::atomic<std::uint64_t>& losses)
+    : sheaf_(std::move(sheaf)), confinement_(std::move(confinement)), losses_(losses), thread_([this] { watch(); }) {}
 
 DeviceProbe::~DeviceProbe() {
   {
@@ -25,20 +26,30 @@ DeviceProbe::~DeviceProbe() {
   thread_.join();
 }
 
-DeviceProbe::Result DeviceProbe::result() const {
+DeviceProbe::Result DeviceProbe::result() {
   const std::lock_guard lock(mutex_);
+  if (result_.ready && losses_ != losses_seen_) {
+    result_ = {false, "a worker had no device, or lost it: devices are still being looked for"};
+    doubted_ = true;
+    changed_.notify_all();
+  }
   return result_;
 }
 
 void DeviceProbe::watch() {
   std::unique_lock lock(mutex_);
   while (!closed_) {
+    doubted_ = false;
+    losses_seen_ = losses_;
     lock.unlock();
     Result found = probe();
     lock.lock();
     result_ = std::move(found);
-    if (result_.ready) return;
-    changed_.wait_for(lock, retry_after, [this] { return closed_; });
+    const auto asked = [this] { return closed_ || doubted_; };
+    if (result_.ready)
+      changed_.wait(lock, asked);
+    else
+      changed_.wait_for(lock, retry_after, asked);
   }
 }
 
@@ -49,7 +60,9 @@ DeviceProbe::Result DeviceProbe::probe() {
                               [&](std::string_view bytes) {
                                 if (complaint.size() < max_reason) complaint.append(bytes.substr(0, max_reason));
                               }};
-    const WorkerEnding ending = run_worker({sheaf_, "devices", "--json"}, output, stop_, {grace, longest, nullptr});
+    const Confinement confinement(confinement_, sheaf_, {});
+    const WorkerEnding ending =
+        run_worker({sheaf_, "devices", "--json"}, output, stop_, {grace, longest, &confinement});
     if (ending.exit_code == 0) return {true, ""};
     const std::string line = complaint.substr(0, complaint.find('\n'));
     return {false, line.empty() ? "'sheaf devices' failed" : line};

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "jobs/confinement.hpp"
 #include "jobs/worker_process.hpp"
 
 namespace sheaf::server {
 
-/// Whether a worker finds a device: `sheaf devices` is run at the start, and again every minute while it fails.
+/// Whether a worker finds a device: `sheaf devices`, confined as workers are, is run at the start, again every minute
+/// while it fails, and whenever somebody asks after a worker was without one.
 class DeviceProbe {
  public:
-  explicit DeviceProbe(std::string sheaf);
+  /// `losses`: how many workers had no device or lost it.
+  DeviceProbe(std::string sheaf, ConfinementOptions confinement, const std::atomic<std::uint64_t>& losses);
   ~DeviceProbe();
   DeviceProbe(const DeviceProbe&) = delete;
   DeviceProbe& operator=(const DeviceProbe&) = delete;
@@ -22,17 +27,20 @@ class DeviceProbe {
     bool ready = false;
     std::string reason = "the devices are still being looked for";
   };
-  [[nodiscard]] Result result() const;
+  [[nodiscard]] Result result();
 
  private:
   void watch();
   [[nodiscard]] Result probe();
 
   std::string sheaf_;
-  mutable std::mutex mutex_;
+  ConfinementOptions confinement_;
+  const std::atomic<std::uint64_t>& losses_;
+  std::mutex mutex_;
   std::condition_variable changed_;
   Result result_;
-  bool closed_ = false;
+  std::uint64_t losses_seen_ = 0;
+  bool closed_ = false, doubted_ = false;
   StopSwitch stop_;
   std::thread thread_;
 };

@@ -18,7 +18,7 @@ struct RouteContext {
   JobService& service;
   StreamSlots& streams;
   Metrics& metrics;
-  const DeviceProbe& device;
+  DeviceProbe& device;
   std::function<std::size_t()> connections;     // open now
   std::vector<std::string> confinement;         // measures that hold for workers
   std::chrono::milliseconds heartbeat{15'000};  // between comments on an idle event stream

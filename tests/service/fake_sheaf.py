@@ -221,5 +221,6 @@ if __name__ == "__main__":
         sys.exit(0)
     if given.command == "devices":
         print("[]")
-        sys.exit(int(os.environ.get("FAKE_DEVICES_EXIT", "0")))
+        gone = os.environ.get("FAKE_DEVICES_GONE")  # a file: there is no device as long as it is there
+        sys.exit(4 if gone and os.path.exists(gone) else int(os.environ.get("FAKE_DEVICES_EXIT", "0")))
     render(given)

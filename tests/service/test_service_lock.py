@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One data folder, one service; and what a killed one leaves behind may hold it for a moment longer."""
+"""One data folder, one service; that the lock of a killed one goes with it is held by tests/unit/server_files_test.cpp."""
 
 import fcntl
 import json
@@ -13,7 +13,7 @@ from service import FAKE, PATIENCE, program
 
 @pytest.fixture
 def second(tmp_path: pathlib.Path) -> Iterator[subprocess.Popen[str]]:
-    """A service on a folder that somebody has locked; `held` is closed to let go."""
+    """A service on a folder that somebody has locked."""
     command = [program("sheafd"), "--listen", "127.0.0.1:0", "--data", tmp_path, "--sheaf", FAKE, "--min-free", "0"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         yield process
@@ -27,19 +27,12 @@ def messages(process: subprocess.Popen[str]) -> Iterator[str]:
 
 
 @pytest.fixture
-def held(tmp_path: pathlib.Path) -> Iterator[list[object]]:
+def held(tmp_path: pathlib.Path) -> Iterator[None]:
     with (tmp_path / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield [lock]
+        fcntl.lockf(lock, fcntl.LOCK_EX)
+        yield
 
 
-def test_waits_for_what_a_killed_service_left(held: list, second: subprocess.Popen[str]) -> None:
-    said = messages(second)
-    assert "waiting for the data folder" in said
-    held[0].close()
-    assert "listening" in said
-
-
-def test_refuses_the_folder_of_a_service_that_runs(held: list, second: subprocess.Popen[str]) -> None:
+def test_refuses_the_folder_of_a_service_that_runs(held: None, second: subprocess.Popen[str]) -> None:
     assert any("another sheafd uses this data folder" in line for line in messages(second))
     assert second.wait(PATIENCE) == 6

@@ -207,6 +207,23 @@ def test_readiness_follows_the_device(start: Callable[..., Service]) -> None:
     assert reply.json() == {"status": "ready", "checks": {"device": "ok", "disk": "ok", "queue": "ok"}}
 
 
+def test_a_lost_device_ends_readiness(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
+    gone = tmp_path / "gone"
+    service = start("--attempts", "1", env={"FAKE_DEVICES_GONE": str(gone)})
+    service.wait_until_ready()
+    assert service.http.get("/readyz").status_code == 200
+    lost = gltf(exit={"code": 4, "message": "the device was lost"})
+    assert service.wait(service.accepted(lost, {"frames": 0}))["error"]["code"] == "device"
+    service.wait_until_ready()
+    assert service.http.get("/readyz").status_code == 200  # it has come back meanwhile
+    gone.touch()
+    assert service.wait(service.accepted(lost, {"frames": 0}))["state"] == "failed"
+    service.wait_until_ready()
+    assert check_problem(service.http.get("/readyz"), 503, "not-ready")["checks"]["device"] != "ok"
+    # Two starts each: the first has rendered the frame, so that it was not in vain.
+    assert "sheaf_workers_without_device_total 4\n" in service.http.get("/metrics").text
+
+
 def test_one_service_a_data_folder(start: Callable[..., Service]) -> None:
     service = start()
     with pytest.raises(AssertionError, match="did not start"):

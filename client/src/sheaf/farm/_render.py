@@ -27,6 +27,7 @@ from .._settings import wire_settings
 from ._ledger import Chunk, FarmOptions, Ledger
 from ._scene import Bundle, ScenePlugin, bundle, plugin_name
 from ._task import Order, Piece, Report, render_chunk
+from ._workers import Workers
 
 TICK_SECONDS = 1.0
 """How often lateness is looked at where nothing happens."""
@@ -157,6 +158,7 @@ class _Run:
     ) -> None:
         self._dask, self._order, self._ledger, self._folder = dask, order, ledger, folder
         self._progress, self._on_file = progress, on_file
+        self._workers = Workers(dask)
         self._result = FarmResult()
         self._ended: queue.SimpleQueue[tuple[Chunk, Future[Report]]] = queue.SimpleQueue()
         self._flying: dict[int, Future[Report]] = {}
@@ -198,7 +200,7 @@ class _Run:
 
     def _hand_out(self) -> None:
         """Keeps every worker busy with one chunk, and one more in hand."""
-        workers = self._workers()
+        workers = len(self._workers)
         now = time.monotonic()
         while len(self._flying) < 2 * workers and (chunk := self._ledger.next_chunk(now, workers)):
             self._submit(chunk)
@@ -210,9 +212,9 @@ class _Run:
         order = Order(**{**vars(self._order), "frames": chunk.frames, "timeout": chunk.timeout})
         key = f"sheaf-{id(self):x}-{chunk.id}"
         away = self._holders(chunk) if chunk.is_copy else []
-        others = [address for address in self._dask.scheduler_info(n_workers=-1)["workers"] if address not in away]
+        others = [address for address in self._workers.addresses() if address not in away] if away else []
         # A wish, no condition: a task that may only run where nobody is left would wait for ever.
-        wish = {"workers": others, "allow_other_workers": True} if away and others else {}
+        wish = {"workers": others, "allow_other_workers": True} if others else {}
         future: Future[Report] = self._dask.submit(render_chunk, order, key=key, pure=False, retries=0, **wish)
         self._flying[chunk.id] = future
         future.add_done_callback(partial(self._note_end, chunk))  # type: ignore[no-untyped-call]
@@ -273,13 +275,10 @@ class _Run:
             raise ValueError(f"{piece.name}: the bytes here are not those that the worker wrote")
         return path
 
-    def _workers(self) -> int:
-        return max(1, len(self._dask.scheduler_info(n_workers=-1)["workers"]))
-
     def _tell(self) -> None:
         total, done = len(set(self._ledger.frames)), self._ledger.done
         state: Any = "done" if done == total else "running"
-        self._progress(Progress(state, done, total, done / total, self._ledger.eta(self._workers())))
+        self._progress(Progress(state, done, total, done / total, self._ledger.eta(len(self._workers))))
 
 
 def _add(sums: dict[str, Any], more: Mapping[str, Any]) -> None:
