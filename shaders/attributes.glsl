@@ -7,7 +7,10 @@ struct Looks {
   Material material;
 };
 
-Looks looks_of(uint index) { return Looks(instances[index], materials[instances[index].material]); }
+Looks looks_of(uint index) {
+  Instance instance = load_instance(index);
+  return Looks(instance, load_material(instance.material));
+}
 
 uvec3 triangle_vertices(Instance instance, uint triangle) {
   uint first = instance.first_index + 3u * (triangle - instance.first_triangle);

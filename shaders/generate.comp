@@ -176,7 +176,7 @@ void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint
   }
 }
 
-float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : materials[volume_material(stack & 0xFFu)].ior; }
+float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : load_material(volume_material(stack & 0xFFu)).ior; }
 
 // Snell about n; false in total internal reflection.
 bool bend(vec3 d, vec3 n, float eta, out vec3 t) {
@@ -227,7 +227,7 @@ vec3 absorbed(Parent p, Surface s, Material m, float t) {
   uint top = p.medium & 0xFFu;
   vec3 stops = vec3(0);
   if (top != 0u)
-    stops = materials[volume_material(top)].absorption;
+    stops = load_material(volume_material(top)).absorption;
   else if (m.volume != 0u && !s.front)
     stops = m.absorption;
   return vec3(stops.x > 0.0 ? exp2(-stops.x * t) : 1.0, stops.y > 0.0 ? exp2(-stops.y * t) : 1.0,

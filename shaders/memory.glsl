@@ -8,6 +8,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs { uint64_t pair[TRIANGLE_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer NodePairs { uint64_t pair[NODE_WORDS / 2]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WordPairs { uint64_t pair[INSTANCE_WORDS / 2]; };
 
 // Offsets fit 32 bits: a buffer is at most 4 GiB (checked where it is made).
 TrianglePairs triangle_pairs(uint triangle) { return TrianglePairs(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS))); }
@@ -28,6 +29,55 @@ vec4 load_color(uint i) { return OneVec4(pack64(frame.colors_at) + uint64_t(i * 
 
 vec3 load_corner(uint triangle, uint corner) {
   return OneVec3(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS) + 12u * corner)).v;
+}
+
+// Words 2k … 2k + 3 of a structure.
+vec4 load_four(uvec2 buffer_at, uint offset, uint k) {
+  WordPairs words = WordPairs(pack64(buffer_at) + uint64_t(offset));
+  return uintBitsToFloat(uvec4(unpack32(words.pair[k]), unpack32(words.pair[k + 1u])));
+}
+uvec2 load_pair(uvec2 buffer_at, uint offset, uint k) { return unpack32(WordPairs(pack64(buffer_at) + uint64_t(offset)).pair[k]); }
+
+Instance load_instance(uint index) {
+  uint at = index * (4u * INSTANCE_WORDS);
+  vec4 f[5];
+  for (uint k = 0u; k < 5u; ++k) f[k] = load_four(frame.instances_at, at, 2u * k);
+  uvec2 p[7];
+  for (uint k = 0u; k < 7u; ++k) p[k] = load_pair(frame.instances_at, at, 10u + k);
+  return Instance(f[0].xyz, vec3(f[0].w, f[1].xy), vec3(f[1].zw, f[2].x), f[2].yzw, f[3].xyz, vec3(f[3].w, f[4].xy),
+                  vec3(f[4].zw, uintBitsToFloat(p[0].x)), uintBitsToFloat(p[0].y), p[1].x, p[1].y, p[2].x, p[2].y, p[3].x, p[3].y,
+                  p[4].x, p[4].y, p[5].x, p[5].y, p[6].x, 0u);
+}
+
+// Without its textures: see load_use.
+Material load_material(uint index) {
+  uint at = index * (4u * MATERIAL_WORDS);
+  vec4 f[4];
+  for (uint k = 0u; k < 4u; ++k) f[k] = load_four(frame.materials_at, at, 2u * k);
+  uvec2 volume_id = load_pair(frame.materials_at, at, 8u);
+  Material m;
+  m.base_color = f[0];
+  m.emissive = f[1].xyz;
+  m.metallic = f[1].w;
+  m.roughness = f[2].x;
+  m.alpha_cutoff = f[2].y;
+  m.transmission = f[2].z;
+  m.ior = f[2].w;
+  m.absorption = f[3].xyz;
+  m.flags = floatBitsToUint(f[3].w);
+  m.volume = volume_id.x;
+  m.id = volume_id.y;
+  return m;
+}
+
+TextureUse load_use(uint material, uint place) {
+  uint at = 4u * (material * MATERIAL_WORDS + MATERIAL_USES + place * USE_WORDS);
+  vec4 a = load_four(frame.materials_at, at, 0u);
+  vec2 turn = uintBitsToFloat(load_pair(frame.materials_at, at, 2u));
+  uvec2 strength_flags = load_pair(frame.materials_at, at, 3u), first_width = load_pair(frame.materials_at, at, 4u),
+        height_levels = load_pair(frame.materials_at, at, 5u);
+  return TextureUse(a.xy, a.zw, turn, uintBitsToFloat(strength_flags.x), strength_flags.y, first_width.x, first_width.y,
+                    height_levels.x, height_levels.y);
 }
 
 struct Corners {

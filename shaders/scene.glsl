@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reading triangles, instances and materials.
+// Reading triangles.
 #include "memory.glsl"
 #include "triangle.glsl"
-BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
-BUFFER(ROLE_MATERIALS, readonly, Material, materials);
 
 uint instance_of(Corners corners) { return corners.instance & TRIANGLE_INSTANCE_MASK; }
 

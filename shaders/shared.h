@@ -226,6 +226,12 @@ SHEAF_CONST TEXTURE_OCCLUSION = 4u;
 SHEAF_CONST TEXTURE_EMISSIVE = 5u;
 SHEAF_CONST TEXTURES = 6u;
 
+// Words of the structures below.
+SHEAF_CONST INSTANCE_WORDS = 34u;
+SHEAF_CONST USE_WORDS = 12u;
+SHEAF_CONST MATERIAL_USES = 18u;  // where they begin
+SHEAF_CONST MATERIAL_WORDS = MATERIAL_USES + TEXTURES * USE_WORDS;
+
 struct TextureUse {
   vec2 offset;
   vec2 scale;
@@ -273,6 +279,7 @@ struct Instance {
   uint dynamic;     // first vertex in the dynamic buffer, NO_INDEX where the instance is rigid
   uint material;
   uint object;      // node + 1
+  uint unused;      // structures read by address are whole pairs of words, see memory.glsl
 };
 
 struct Light {
@@ -322,6 +329,8 @@ struct Frame {      // per frame and batch of samples
   uvec2 colors_at;
   uvec2 dynamic_at;
   uvec2 texels_at;
+  uvec2 instances_at;
+  uvec2 materials_at;
 };
 
 struct Deform {     // one deforming instance's vertices
@@ -340,9 +349,9 @@ struct Deform {     // one deforming instance's vertices
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TextureUse) == 48);
-static_assert(sizeof(Material) == 72 + 6 * 48);
-static_assert(sizeof(Instance) == 4 * (21 + 1 + 11));
+static_assert(sizeof(TextureUse) == 4 * USE_WORDS);
+static_assert(sizeof(Material) == 4 * MATERIAL_WORDS);
+static_assert(sizeof(Instance) == 4 * INSTANCE_WORDS);
 }  // namespace sheaf::gpu
 #endif
 #endif

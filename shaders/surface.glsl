@@ -34,14 +34,16 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
   return size > 0.0 && size < INFINITY ? v / size : otherwise;
 }
 
-vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 geometric, vec3 mapped) {
+vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, vec3 mapped) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
   vec3 n = is_dynamic ? load_dynamic(d.x + 1u) * b.x + load_dynamic(d.y + 1u) * b.y + load_dynamic(d.z + 1u) * b.z
                       : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
   n = safe_normalize(n, geometric);
-  if (!TEXTURED_NORMALS || (material.uses[TEXTURE_NORMAL].flags & TEXTURE_HERE) == 0u || instance.tangent == NO_INDEX) return n;
+  if (!TEXTURED_NORMALS || instance.tangent == NO_INDEX) return n;
+  TextureUse use = load_use(instance.material, TEXTURE_NORMAL);
+  if ((use.flags & TEXTURE_HERE) == 0u) return n;
   uvec3 w = v + instance.tangent;
   vec4 first_tangent = load_tangent(w.x);
   vec4 tangent = first_tangent * b.x + load_tangent(w.y) * b.y + load_tangent(w.z) * b.z;
@@ -50,8 +52,7 @@ vec3 shading_normal(Instance instance, Material material, uvec3 v, vec3 b, vec3 
   t = safe_normalize(t, vec3(0));
   vec3 bitangent = cross(n, t) * (first_tangent.w < 0.0 ? -1.0 : 1.0) * instance.determinant_sign;
   vec3 texel = mapped * 2.0 - 1.0;
-  float strength = material.uses[TEXTURE_NORMAL].strength;
-  return safe_normalize(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
+  return safe_normalize(t * (texel.x * use.strength) + bitangent * (texel.y * use.strength) + n * texel.z, n);
 }
 
 // The ellipse in which a cone of width 1 meets the surface, as two diameters: in the plane of incidence and across it
@@ -125,7 +126,7 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   }
   vec4 texels[TEXTURES];
   look_up_filtered(instance.material, point_uv, texels);
-  vec3 n = shading_normal(instance, material, v, b, g, texels[TEXTURE_NORMAL].xyz);
+  vec3 n = shading_normal(instance, v, b, g, texels[TEXTURE_NORMAL].xyz);
   s.front = dot(g, direction) < 0.0;
   if (!s.front) s.curvature = -s.curvature;
   s.geometric = s.front ? g : -g;
@@ -135,7 +136,8 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   s.metallic = clamp(material.metallic * mr.b, 0.0, 1.0);
   s.roughness = clamp(material.roughness * mr.g, 0.0, 1.0);
   s.emission = material.emissive * texels[TEXTURE_EMISSIVE].rgb;
-  s.occlusion = 1.0 + material.uses[TEXTURE_OCCLUSION].strength * (texels[TEXTURE_OCCLUSION].r - 1.0);
+  s.occlusion = 1.0;
+  if (TEXTURED) s.occlusion += load_use(instance.material, TEXTURE_OCCLUSION).strength * (texels[TEXTURE_OCCLUSION].r - 1.0);
   s.transmission = clamp(material.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
   s.uv = TEXTURED ? point_uv.uv0.at : interpolate_uv(instance.uv0, v, b);
   s.object = instance.object;

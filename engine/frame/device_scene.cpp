@@ -66,14 +66,14 @@ DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& 
   tangents_ = upload(device, recorder, "tangents", layout_.tangents, by_address);
   uvs_ = upload(device, recorder, "texture coordinates", layout_.uvs, by_address);
   colors_ = upload(device, recorder, "vertex colors", layout_.colors, by_address);
-  materials_ = upload(device, recorder, "materials", layout_.materials);
+  materials_ = upload(device, recorder, "materials", layout_.materials, by_address);
   texels_ = upload(device, recorder, "texels", layout_.texels, by_address);
   deforms_ = upload(device, recorder, "deforming instances", layout_.deforms);
   joints_ = upload(device, recorder, "joints", layout_.joints);
   morphs_ = upload(device, recorder, "morph targets", layout_.morphs);
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "triangles", layout_.triangles * gpu::TRIANGLE_WORDS * 4, Kind::device, by_address);
-  instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload);
+  instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload, by_address);
   dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3),
                     Kind::device, by_address);
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
@@ -131,6 +131,8 @@ void DeviceScene::set_addresses(gpu::Frame& frame) const {
   frame.colors_at = words(colors_.address());
   frame.dynamic_at = words(dynamic_.address());
   frame.texels_at = words(texels_.address());
+  frame.instances_at = words(instances_.address());
+  frame.materials_at = words(materials_.address());
   if (nodes_) frame.nodes_at = words(nodes_.address());
 }
 

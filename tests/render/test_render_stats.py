@@ -134,10 +134,12 @@ def test_what_a_scene_does_not_need_is_left_out_and_said(sheaf):
     plain = left_out(sheaf, "unlit")
     assert {"reflection", "refraction", "media", "animate", "deform", "normal maps", "alpha test"} <= set(plain)
     assert all(reason.strip() for reason in plain.values())
-    rich = left_out(sheaf, "whitted", strategy="hybrid")
+    rich = left_out(sheaf, "whitted", "--sort", "on", strategy="hybrid")
     assert not {"reflection", "refraction", "media", "animate", "deform", "sort", "rays_hierarchy"} & set(rich)
     unsorted = left_out(sheaf, "whitted", "--sort", "off", strategy="hybrid")
     assert unsorted["sort"] == "--sort off"
+    assert "costs more" in left_out(sheaf, "whitted", strategy="hybrid")["sort"]
+    assert "sort" not in left_out(sheaf, "whitted", strategy="crsh")
     shallow = left_out(sheaf, "whitted", "--depth", 0)
     assert "--depth 0" in shallow["reflection"]
     assert "raster" in left_out(sheaf, "unlit", "--primary", "trace")

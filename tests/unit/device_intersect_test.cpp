@@ -181,6 +181,15 @@ std::vector<Subject> subjects() {
   add("huge soup", 100, 1e6, 3e5, 2000);
   add("crumbs", 500, 1, 0.03, 4000);
   add("one triangle", 1, 0.5, 1, 500);
+  // Parallel rays from all over: bundles as narrow as can be that cross everything, and so give up.
+  Dice far(77);
+  const auto confetti = random_triangles(far, 3000, 1, 0.02);
+  Rays parallel(640);
+  for (auto& ray : parallel) {
+    ray.origin = glm::vec3(far.cube());
+    ray.direction = glm::normalize(glm::vec3(0.3F, -0.9F, 0.2F));
+  }
+  all.push_back({"parallel", mesh_of(confetti), parallel});
   // Two faces in one place and a fan with a shared corner: ties go to the lower triangle.
   Dice dice(9);
   std::vector<Corners> fan;
