@@ -94,6 +94,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   out.stats.time_s = request.time_s;
   out.stats.counted = settings_.counted;
 
+  const std::uint64_t dispatched = recorder_.dispatches();
   const Motion motion = scene_.update(request.pose, request.camera, recorder_);
   bind_all();
   const Tile whole = request.only.value_or(Tile{0, 0, settings_.width, settings_.height});
@@ -117,6 +118,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
     if (const auto found = times.find(name); found != times.end())
       out.stats.stages_ms.emplace_back(name, found->second);
   out.stats.peak_device_mib = static_cast<double>(device_.peak_bytes()) / (1 << 20);
+  out.stats.dispatches = recorder_.dispatches() - dispatched;
   std::uint64_t rays = 0;
   for (const auto count : out.stats.rays) rays += count;
   out.stats.brute_force = rays * scene_.triangles();

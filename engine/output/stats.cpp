@@ -76,6 +76,7 @@ Json frame_json(const FrameStats& frame) {
           {"time_s", frame.time_s},
           {"wall_ms", frame.wall_ms},
           {"peak_device_mib", frame.peak_device_mib},
+          {"dispatches", frame.dispatches},
           {"counted", frame.counted},
           {"repeated", frame.repeated},
           {"stages", std::move(stages)},

@@ -65,7 +65,8 @@ def work_of(frame: dict[str, Any], strategy: str) -> dict[str, Any]:
     generations = [{k: v for k, v in g.items() if k not in ("sort_reason", "key_bits")} for g in frame["generations"]]
     work = {"rays": frame["rays"], "hits": frame["hits"], "tests": tests, "generations": generations}
     work["device_bytes"] = round(frame["peak_device_mib"] * 2**20)
-    return work | {key: frame[key] for key in ("dispatches", "buffers") if key in frame}
+    work["dispatches"] = frame["dispatches"]
+    return work
 
 
 def count(case: str, strategy: str, threads: int | None = None) -> list[dict[str, Any]]:

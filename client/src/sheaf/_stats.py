@@ -48,6 +48,7 @@ class FrameStats(TypedDict, total=False):
     time_s: float
     wall_ms: float
     peak_device_mib: float
+    dispatches: int
     counted: bool
     stages: dict[str, float]
     rays: dict[str, int]
