@@ -23,6 +23,7 @@ struct Frustum {
   uint axis;       // z
   uint octant;     // of the directions, roughly
   bool endless;    // coordinates past what floats can be padded for: everything is met
+  bool settled;    // of a cell that was not divided: what has met it meets it again
   vec4 side;       // on the near plane: u lower, u upper, v lower, v upper
   vec4 reciprocal; // of what each moves by until the far plane; finite, not 0
 };
@@ -110,6 +111,7 @@ Frustum end_hull(Hull h, uint octant) {
   f.axis = h.axis;
   f.octant = octant;
   f.endless = !(h.largest < 1e30);
+  f.settled = false;
   f.side = h.near + out_by;
   vec4 moved = (h.far + out_by) - f.side;
   float least = max(h.largest * 9.3132257e-10, 1e-36);  // 2^-30: a side along z is turned a little

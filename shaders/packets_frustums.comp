@@ -13,7 +13,6 @@ BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_PACKETS, readonly, uvec2, packets);  // first ray, cell; one more at the end
 BUFFER(ROLE_PAIRS, writeonly, uvec2, pairs);
-BUFFER(ROLE_LISTS, writeonly, uvec2, lists);
 layout(push_constant) uniform Push { uvec2 frustums; } push;
 #include "hierarchy_box.glsl"
 
@@ -36,5 +35,4 @@ void main() {
   }
   store_frustum(push.frustums, i, end_hull(hull, octant_of(leader.direction)));
   pairs[i] = uvec2(i, 0u);
-  lists[i] = uvec2(0);
 }

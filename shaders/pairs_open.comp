@@ -2,7 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One level of the breadth-first walk (S, R 3.4): of every pair's node, the children that the pair's cell may enter. Pairs with a
-// leaf stay as they are. What is entered is marked, a bit a child; a scan makes the next level's pairs of it.
+// leaf stay as they are, or, where cells have become smaller since (`classify`), are tested once more. What is entered is marked,
+// a bit a child; a scan makes the next level's pairs of it.
 #define COMPUTE
 #include "common.glsl"
 #extension GL_KHR_shader_subgroup_vote : require
@@ -23,6 +24,7 @@ layout(push_constant) uniform Push {
   uint room;       // pairs of a half
   uint level;      // of the object hierarchy, root 0
   uint ray_level;  // of the cells, for the stats
+  uint leaves;     // 1: pairs with leaves are tested too
 } push;
 
 // Axes of the boxes in the frustum's order: once a node is cheaper than once a child.
@@ -58,6 +60,13 @@ void main() {
     Frustum f = load_frustum(push.frustums, pair.x);
     mask = in_visiting_order(entered_children(f, pair.y), f.octant) | (f.octant << PAIR_OCTANT);
     tests = bitCount(unpack_grid(uvec2(0), unpack32(node_pairs(pair.y).pair[1])).there);
+  } else if (there && push.leaves != 0u) {
+    uint place = pair.y & ~CHILD_LEAF;
+    Frustum f = load_frustum(push.frustums, pair.x);
+    if (!f.settled) {
+      mask = (entered_children(f, place / WIDE) & (1u << (place % WIDE))) != 0u ? PAIR_KEPT : 0u;
+      tests = 1u;
+    }
   }
   if (there) entered[i] = mask;
   if (is_node(pair.y)) counters[COUNT_OPEN] = 1u;

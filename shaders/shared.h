@@ -65,7 +65,14 @@ using mat3 = glm::mat3;
 #define ROLE_PACKETS 56
 #define ROLE_LISTS 57
 #define ROLE_PAIR_LEVELS 58
-#define ROLE_COUNT 59
+#define ROLE_CLASS_BOUNDS 59
+#define ROLE_CELLS 60
+#define ROLE_CELLS_NEXT 61
+#define ROLE_CELL_STOPS 62
+#define ROLE_CELL_OFFSETS 63
+#define ROLE_RAY_CELLS 64
+#define ROLE_CELL_CUTS 65
+#define ROLE_COUNT 66
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 
@@ -108,6 +115,8 @@ SHEAF_CONST COUNT_WALK_OVERFLOW = 25u;
 SHEAF_CONST COUNT_OPEN = 26u;         // 1: some pair of the level has a node
 SHEAF_CONST COUNT_PAIR_HALF = 27u;    // half of the pairs' buffer that holds the last level made
 SHEAF_CONST COUNT_PAIR_HALVES = 28u;  // 2 words: pairs in each half
+SHEAF_CONST COUNT_WALK_RAY = 30u;     // rays at work: the first …
+SHEAF_CONST COUNT_WALK_RAYS = 31u;    // … and how many
 SHEAF_CONST COUNT_WORDS = 32u;
 
 // Statistics, 64-bit sums as two words (low, high), a block of STAT_WORDS a kind.
@@ -144,7 +153,10 @@ SHEAF_CONST ARGS_WALK_RUNS = 15u;      // one invocation a cell of the walk
 SHEAF_CONST ARGS_WALK_CELLS = 16u;     // one workgroup a cell of the walk
 SHEAF_CONST ARGS_PAIRS = 17u;          // one invocation a pair of the level at work
 SHEAF_CONST ARGS_PAIR_BLOCKS = 18u;    // one workgroup a scan block of them
-SHEAF_CONST ARGS_COUNT = 19u;
+SHEAF_CONST ARGS_WALK_BLOCKS = 19u;    // one workgroup a scan block of the walk's rays
+SHEAF_CONST ARGS_WALK_SCATTER = 20u;   // the same, or nothing where the cells have no room
+SHEAF_CONST ARGS_CELL_BLOCKS = 21u;    // one workgroup a scan block of the walk's cells
+SHEAF_CONST ARGS_COUNT = 22u;
 
 SHEAF_CONST GROUP = 64u;          // invocations of a plain workgroup
 SHEAF_CONST SCAN_GROUP = 32u;     // invocations of a scan workgroup …
@@ -193,6 +205,9 @@ SHEAF_CONST RAY_NODE_WORDS = 9u;
 // Frustums of packets and cells (frustum_memory.glsl), and what their pairs with nodes entered: a bit a child in visiting order,
 // and the octant of that order; or that the pair has a leaf, and is kept.
 SHEAF_CONST FRUSTUM_WORDS = 12u;
+// Classes of rays: face, then so many halvings, are the key. A cell with no more candidates than CLASS_FEW, all leaves, stays whole.
+SHEAF_CONST CLASS_HALVINGS = 20u;
+SHEAF_CONST CLASS_FEW = 4u;
 SHEAF_CONST PAIR_KEPT = 256u;
 SHEAF_CONST PAIR_OCTANT = 9u;  // its lowest bit
 

@@ -4,7 +4,8 @@ foreach(stem animate_vertices animate_triangles objects_refit objects_spheres ge
              hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill rays_hierarchy
              rays_hierarchy_bundles traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
              resolve layers objects_boxes traverse_query packets_keys packets_frustums walk_begin pairs_open pairs_ranges
-             intersect_packets)
+             intersect_packets classify_bounds classify_keys classify_begin classify_frustums classify_stops
+             classify_candidates classify_cuts)
   sheaf_shader(${stem} ${stem}.comp)
 endforeach()
 sheaf_shader(raster_vert raster.vert)
@@ -17,7 +18,7 @@ foreach(scan COMPACT COMPRESS STARTS SEGMENTED PAIRS LOOSE PLAIN PLAIN_SEGMENTED
   sheaf_shader(${stem}_spine scan_spine.comp SCAN_${scan})
   sheaf_shader(${stem}_scatter scan_scatter.comp SCAN_${scan})
 endforeach()
-foreach(scan PACKETS OPEN)
+foreach(scan PACKETS OPEN DIVIDE CANDIDATES CLASS_PACKETS)
   string(TOLOWER ${scan} stem)
   sheaf_shader(${stem}_reduce scan_reduce.comp SCAN_CELLS SCAN_${scan})
   sheaf_shader(${stem}_spine scan_spine.comp SCAN_CELLS SCAN_${scan})

@@ -95,7 +95,9 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       ->capture_default_str();
   command.add_option("--depth", o.depth, "generations of reflection and refraction; default 4");
   command.add_option("--cutoff", o.cutoff, "least weight of a ray worth following; default 0.002");
-  command.add_option("--strategy", o.strategy, "auto, hybrid, crsh, rsh, frustum, bvh, brute, rayquery, reference")
+  command
+      .add_option("--strategy", o.strategy,
+                  "auto, hybrid, crsh, rsh, frustum, classify, bvh, brute, rayquery, reference")
       ->capture_default_str();
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
   command

@@ -128,16 +128,18 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!features.normal_mapped) leave("normal maps", "no material has one");
   if (!features.masked) leave("alpha test", "no alpha-masked material");
   const bool traced = strategy != Strategy::brute && strategy != Strategy::rayquery && strategy != Strategy::reference;
-  plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid || strategy == Strategy::frustum;
+  plan.classes = strategy == Strategy::classify;
+  plan.packets = strategy == Strategy::frustum || plan.classes;
+  plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid || plan.packets;
   if (!plan.object_hierarchy)
     leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
   plan.ray_hierarchy = strategy == Strategy::hybrid || strategy == Strategy::rsh || strategy == Strategy::crsh;
-  plan.packets = strategy == Strategy::frustum;
   if (!plan.ray_hierarchy && !plan.packets)
     leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
   const bool by_key = strategy == Strategy::crsh || strategy == Strategy::frustum;
   plan.bundles = strategy == Strategy::hybrid;
-  plan.sorts = (by_key && settings.sort != SortPolicy::off) || (plan.bundles && settings.sort == SortPolicy::on);
+  plan.sorts =
+      plan.classes || (by_key && settings.sort != SortPolicy::off) || (plan.bundles && settings.sort == SortPolicy::on);
   if (!plan.sorts)
     leave("sort",
           settings.sort == SortPolicy::off && traced ? "--sort off"

@@ -37,6 +37,7 @@ struct Plan {
   bool raster = true, deform = false, textured_normals = false;
   bool sorts = false, ray_hierarchy = false, object_hierarchy = false, bundles = false, packets = false,
        spheres = false;
+  bool classes = false;  // rays are sorted by class, also camera rays
   std::vector<LeftOut> left_out;
 };
 

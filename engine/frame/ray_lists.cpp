@@ -51,7 +51,7 @@ void make_sort_memory(const Device& device, RayMemory& m) {
 RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, const Plan& plan,
                           const Features& features, std::uint32_t lights) {
   RayMemory m;
-  const std::uint64_t budget = settings.memory_mib << 20U;
+  const std::uint64_t budget = (settings.memory_mib << 20U) - (plan.packets ? walk_budget(settings) : 0);
   const std::uint64_t spare = plan.refractions && plan.reflections ? 2 : 1;  // a hit there makes up to two rays
   const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
   const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;

@@ -37,6 +37,11 @@ struct RayMemory {
   Buffer records, records_readback;  // the counters as they stood after each list was traced, for the stats
 };
 
+/// What walks of packets or cells take of --memory for their pairs: a quarter.
+[[nodiscard]] inline std::uint64_t walk_budget(const RenderSettings& settings) {
+  return (settings.memory_mib << 20U) / 4;
+}
+
 /// Throws Error{limit} where the budget is too small for one pixel with these lights.
 [[nodiscard]] RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, const Plan& plan,
                                         const Features& features, std::uint32_t lights);

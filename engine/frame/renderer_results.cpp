@@ -5,6 +5,7 @@
 
 #include "frame/renderer.hpp"
 #include "stages/sort.hpp"
+#include "stages/traverse_classes.hpp"
 
 namespace sheaf {
 namespace {
@@ -17,6 +18,7 @@ void add_levels(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t
 
 const char* why_sorted(const Plan& plan, const RenderSettings& settings, std::uint32_t kind) {
   if (!plan.sorts) return "left out";
+  if (plan.classes) return "classes need it";
   if (kind == gpu::KIND_PRIMARY) return "camera rays are in order";
   return settings.sort == SortPolicy::on ? "--sort on" : "the strategy sorts";
 }
@@ -48,11 +50,11 @@ void Renderer::collect_generations(RenderedFrame& out) {
     } else if (plan_.packets) {
       found->nodes += counters[gpu::COUNT_CELLS];
     }
-    found->sorted = plan_.sorts && kind != gpu::KIND_PRIMARY;
+    found->sorted = plan_.sorts && (kind != gpu::KIND_PRIMARY || plan_.classes);
     found->sort_reason = why_sorted(plan_, settings_, kind);
     if (!found->sorted) continue;
-    const KeyLayout layout = key_layout(kind, scene_.lights(), memory_.tile_pixels);
-    found->key_bits = layout.bits();
+    found->key_bits =
+        plan_.classes ? TraverseClasses::key_bits : key_layout(kind, scene_.lights(), memory_.tile_pixels).bits();
     found->chunks += counters[gpu::COUNT_CHUNKS];
   }
 }

@@ -12,15 +12,16 @@
 namespace sheaf {
 namespace {
 
-constexpr std::array<std::pair<Strategy, const char*>, 9> strategies{{{Strategy::automatic, "auto"},
-                                                                      {Strategy::hybrid, "hybrid"},
-                                                                      {Strategy::crsh, "crsh"},
-                                                                      {Strategy::rsh, "rsh"},
-                                                                      {Strategy::frustum, "frustum"},
-                                                                      {Strategy::bvh, "bvh"},
-                                                                      {Strategy::brute, "brute"},
-                                                                      {Strategy::rayquery, "rayquery"},
-                                                                      {Strategy::reference, "reference"}}};
+constexpr std::array<std::pair<Strategy, const char*>, 10> strategies{{{Strategy::automatic, "auto"},
+                                                                       {Strategy::hybrid, "hybrid"},
+                                                                       {Strategy::crsh, "crsh"},
+                                                                       {Strategy::rsh, "rsh"},
+                                                                       {Strategy::frustum, "frustum"},
+                                                                       {Strategy::classify, "classify"},
+                                                                       {Strategy::bvh, "bvh"},
+                                                                       {Strategy::brute, "brute"},
+                                                                       {Strategy::rayquery, "rayquery"},
+                                                                       {Strategy::reference, "reference"}}};
 
 constexpr std::array<std::pair<PixelFilter, const char*>, 3> filters{
     {{PixelFilter::box, "box"}, {PixelFilter::triangle, "triangle"}, {PixelFilter::gaussian, "gaussian"}}};

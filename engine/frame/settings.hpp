@@ -13,7 +13,7 @@
 
 namespace sheaf {
 
-enum class Strategy { automatic, hybrid, crsh, rsh, frustum, bvh, brute, rayquery, reference };
+enum class Strategy { automatic, hybrid, crsh, rsh, frustum, classify, bvh, brute, rayquery, reference };
 enum class SortPolicy { automatic, on, off };
 enum class PrimaryMethod { automatic, raster, trace };
 

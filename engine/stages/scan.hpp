@@ -12,6 +12,7 @@ namespace sheaf {
 
 struct ScanPush {
   std::uint32_t kind = 0, key_bits = 0;
+  std::uint32_t choice = 0;  // of the walks' elements (cell_elements.glsl), which have other names for all three
 };
 
 class Scan {

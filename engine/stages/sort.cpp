@@ -60,12 +60,6 @@ void SortRays::record_keys(Recorder& recorder, const TraceContext& context, std:
 
 void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const {
   const RayMemory& memory = context.memory;
-  const KeyLayout layout = key_layout(kind, context.scene.lights(), memory.tile_pixels);
-  recorder.bind(ROLE_KEYS, memory.keys);
-  recorder.bind(ROLE_CHUNKS, memory.chunks);
-  recorder.bind(ROLE_SKELETON, memory.skeleton);
-  recorder.bind(ROLE_SCAN_OUT, memory.order_kept);
-
   recorder.stage("hash");
   struct {
     std::uint32_t kind, reset;
@@ -74,14 +68,23 @@ void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint
   bounds.reset = 0;
   recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_BLOCKS);
   record_keys(recorder, context, kind);
+  record_order(recorder, context, kind, key_layout(kind, context.scene.lights(), memory.tile_pixels).bits());
+}
 
+void SortRays::record_order(Recorder& recorder, const TraceContext& context, std::uint32_t kind,
+                            std::uint32_t key_bits) const {
+  const RayMemory& memory = context.memory;
+  recorder.bind(ROLE_KEYS, memory.keys);
+  recorder.bind(ROLE_CHUNKS, memory.chunks);
+  recorder.bind(ROLE_SKELETON, memory.skeleton);
+  recorder.bind(ROLE_SCAN_OUT, memory.order_kept);
   recorder.stage("compress");
-  const ScanPush scan{kind, layout.bits()};
+  const ScanPush scan{kind, key_bits};
   compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
   recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
 
   recorder.stage("sort");
-  (void)record_passes(recorder, memory, layout.bits());
+  (void)record_passes(recorder, memory, key_bits);
 
   recorder.stage("decompress");
   recorder.dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);

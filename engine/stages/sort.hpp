@@ -25,6 +25,8 @@ class SortRays {
   void record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const;
   /// The keys of a list as it now stands, after `record`.
   void record_keys(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const;
+  /// Brings the list into the order of memory.keys, of `key_bits` each.
+  void record_order(Recorder& recorder, const TraceContext& context, std::uint32_t kind, std::uint32_t key_bits) const;
   /// The passes alone, over counters[COUNT_CHUNKS] chunks (also for tests). True where the result is in chunks_alt.
   [[nodiscard]] bool record_passes(Recorder& recorder, const RayMemory& memory, std::uint32_t key_bits) const;
 

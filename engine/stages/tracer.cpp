@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "stages/intersect_brute.hpp"
 #include "stages/traverse_bundles.hpp"
+#include "stages/traverse_classes.hpp"
 #include "stages/traverse_frustums.hpp"
 #include "stages/traverse_pairs.hpp"
 #include "stages/traverse_query.hpp"
@@ -28,6 +29,8 @@ std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {
       return std::make_unique<TraversePairs>(context);
     case Strategy::frustum:
       return std::make_unique<TraverseFrustums>(context);
+    case Strategy::classify:
+      return std::make_unique<TraverseClasses>(context);
     case Strategy::brute:
       return std::make_unique<IntersectBrute>(context);
     case Strategy::rayquery:

@@ -18,9 +18,10 @@ std::uint32_t shared_bits(std::uint64_t rays) {
 TraverseFrustums::TraverseFrustums(const TraceContext& c)
     : context_(c),
       keys_kernel_(c.device, "packets_keys"),
+      begin_(c.device, "walk_begin"),
       frustums_(c.device, "packets_frustums"),
       packets_(c.device, "packets"),
-      walk_(c),
+      walk_(c, 1),
       packet_keys_(c.device, "packet keys", std::uint64_t{c.memory.capacity} * 4) {
   if (c.plan.sorts) sort_ = SortRays(c);
 }
@@ -37,12 +38,25 @@ void TraverseFrustums::cut_packets(Recorder& recorder, std::uint32_t kind, bool 
   packets_.record(recorder, {kind, 0}, gpu::ARGS_BLOCKS);
 }
 
+void TraverseFrustums::record_walk(Recorder& recorder, std::uint32_t kind, WalkRange packets) {
+  const struct { std::uint32_t first, most, room; } begin{packets.first, packets.most, walk_.cell_room()};
+  recorder.dispatch(begin_, begin, 1);
+  recorder.dispatch_indirect(frustums_, walk_.frustums_at(), gpu::ARGS_WALK_RUNS);
+  recorder.stage("traverse");  // with its compaction: a stage a level would cost more than what it tells
+  const std::uint32_t levels = context_.scene.hierarchy_levels();
+  for (std::uint32_t level = 0; level < levels; ++level)
+    walk_.open(recorder, kind, {.half_read = level % 2, .level = level});
+  walk_.intersect(recorder, kind, levels);
+}
+
 void TraverseFrustums::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
   list.bind(recorder);
   const bool sorted = context_.plan.sorts && kind != gpu::KIND_PRIMARY;
   if (sorted) sort_.record(recorder, context_, kind);
   cut_packets(recorder, kind, sorted);
-  walk_.trace(recorder, kind, [&] { recorder.dispatch_indirect(frustums_, walk_.frustums_at(), gpu::ARGS_WALK_RUNS); });
+  walk_.trace(
+      recorder, gpu::COUNT_CELLS, 1, [&](WalkRange packets) { record_walk(recorder, kind, packets); },
+      [&](WalkRange packets) { walk_.trace_packet_singly(recorder, kind, packets.first); });
 }
 
 }  // namespace sheaf

@@ -18,11 +18,12 @@ class TraverseFrustums final : public Tracer {
   [[nodiscard]] std::vector<std::uint64_t> pairs_per_level() const override { return walk_.pairs_per_level(); }
 
  private:
+  void record_walk(Recorder& recorder, std::uint32_t kind, WalkRange packets);
   void cut_packets(Recorder& recorder, std::uint32_t kind, bool sorted);
 
   TraceContext context_;
   SortRays sort_;
-  Kernel keys_kernel_, frustums_;
+  Kernel keys_kernel_, begin_, frustums_;
   Scan packets_;
   CellWalk walk_;
   Buffer packet_keys_;

@@ -28,4 +28,4 @@ def device_strategies(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
 
     run = Sheaf(tmp_path_factory.mktemp("devices"))("devices", "--json")
     has_ray_query = json.loads(run.stdout)[0]["ray_query"]
-    return ["bvh", "hybrid", "crsh", "rsh", "frustum", "brute"] + (["rayquery"] if has_ray_query else [])
+    return ["bvh", "hybrid", "crsh", "rsh", "frustum", "classify", "brute"] + (["rayquery"] if has_ray_query else [])

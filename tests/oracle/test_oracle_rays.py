@@ -11,8 +11,8 @@ from oracle import HERE, check_dump, orbit, render_dump
 from soups import SOUPS
 
 CASES = [("soup", "crsh", 1), ("lattice", "hybrid", 1), ("coincident", "rsh", 1), ("needles", "bvh", 1),
-         ("shells", "hybrid", 1), ("soup", "frustum", 1), ("coincident", "frustum", 1),
-         ("soup_far", "bvh", 1), ("whitted", "hybrid", 2), ("cornell", "bvh", 2)]
+         ("shells", "hybrid", 1), ("soup", "frustum", 1), ("coincident", "frustum", 1), ("soup", "classify", 1),
+         ("shells", "classify", 1), ("soup_far", "bvh", 1), ("whitted", "hybrid", 2), ("cornell", "bvh", 2)]
 SIZE = "192x108"
 
 

@@ -117,7 +117,7 @@ def dumped(sheaf, scene: str, *options: object, **named) -> Run:
     ("cornell", "bvh", ("--primary", "trace", "--opaque")), ("cornell", "hybrid", ("--sort", "on",)),
     ("still_life", "crsh", ("--primary", "trace")), ("nested_glass", "hybrid", ("--primary", "trace", "--depth", 6)),
     ("still_life_far", "rsh", ()), ("cornell", "frustum", ("--primary", "trace")),
-    ("degenerate", "brute", ("--primary", "trace")), ("interpolation", "bvh", ("--frames", "7"))])
+    ("whitted", "classify", ("--primary", "trace")), ("degenerate", "brute", ("--primary", "trace")), ("interpolation", "bvh", ("--frames", "7"))])
 def test_every_hit_is_right(sheaf, scene, strategy, options):
     frame = 7 if "--frames" in options else 0
     run = dumped(sheaf, scene, *options, strategy=strategy, size="40x22")

@@ -24,7 +24,7 @@ def test_memory_budget_does_not_show(sheaf, strategy):
     assert counts[0]["peak_device_mib"] < 0.6 * counts[1]["peak_device_mib"]
 
 
-@pytest.mark.parametrize("strategy", ["crsh", "rsh", "frustum", "rayquery", "brute"])
+@pytest.mark.parametrize("strategy", ["crsh", "rsh", "frustum", "classify", "rayquery", "brute"])
 def test_memory_from_the_least_to_no_bound(sheaf, strategy):
     """The least there is, the greatest that may be asked for, and one between that ends tiles somewhere else."""
     if strategy == "rayquery" and not json.loads(sheaf("devices", "--json").stdout)[0]["ray_query"]:
@@ -53,7 +53,7 @@ def test_threads_do_not_show(sheaf):
     assert files[0] == files[1] == files[2]
 
 
-@pytest.mark.parametrize("strategy", ["bvh", "crsh", "frustum"])
+@pytest.mark.parametrize("strategy", ["bvh", "crsh", "frustum", "classify"])
 def test_more_threads_than_cores_do_not_show(sheaf, strategy):
     """And none but the caller's own."""
     files = [sheaf.render("cornell", strategy=strategy, size="96x54", env={"LP_NUM_THREADS": threads}).files[0].read_bytes()
@@ -68,7 +68,8 @@ def test_any_split_over_unlike_nodes(sheaf):
     dice = random.Random(5)
     shuffled = dice.sample(frames, len(frames))
     parts = [shuffled[:1], shuffled[1:4], shuffled[4:9], shuffled[9:]]
-    nodes = [("hybrid", 16, "1"), ("bvh", 64, "3"), ("crsh", 16, "2"), ("hybrid", 4096, "0"), ("frustum", 16, "1")]
+    nodes = [("hybrid", 16, "1"), ("bvh", 64, "3"), ("crsh", 16, "2"), ("hybrid", 4096, "0"), ("frustum", 16, "1"),
+             ("classify", 16, "1")]
     for part, (strategy, mib, threads) in zip(parts, nodes):
         run = sheaf.render("whitted", "--frames", ",".join(map(str, part)), "--memory", mib, strategy=strategy, size="48x27",
                            env={"LP_NUM_THREADS": threads})
@@ -97,7 +98,7 @@ def test_counting_does_not_show(sheaf):
 def test_auto_says_why(sheaf):
     run = sheaf.render("cornell", strategy="auto", stats=True)
     stats = run.stats()
-    assert stats["strategy"] in ("hybrid", "bvh", "crsh", "rsh", "frustum", "brute", "rayquery")
+    assert stats["strategy"] in ("hybrid", "bvh", "crsh", "rsh", "frustum", "classify", "brute", "rayquery")
     assert any(c.isdigit() for c in stats["chosen_because"])
     assert same(run.frame(), sheaf.render("cornell").frame())
 

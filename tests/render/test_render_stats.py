@@ -15,12 +15,12 @@ SIZE = (64, 36)
 @pytest.fixture(scope="module")
 def cornell(sheaf_once) -> dict:
     """The stats of one small picture by each strategy."""
-    names = ("brute", "bvh", "hybrid", "crsh", "rsh", "frustum")
+    names = ("brute", "bvh", "hybrid", "crsh", "rsh", "frustum", "classify")
     runs = sheaf_once.all({"scene": "cornell", "strategy": name, "stats": True, "options": ("--spp", 2)} for name in names)
     return {name: run.stats() for name, run in zip(names, runs)}
 
 
-@pytest.mark.parametrize("strategy", ["brute", "bvh", "hybrid", "crsh", "rsh", "frustum"])
+@pytest.mark.parametrize("strategy", ["brute", "bvh", "hybrid", "crsh", "rsh", "frustum", "classify"])
 def test_schema(cornell, strategy):
     stats = cornell[strategy]
     assert stats["schema"] == 1
@@ -64,7 +64,7 @@ def test_brute_force_tests_every_triangle_for_every_ray(cornell):
 
 
 def test_hierarchies_test_less(cornell):
-    for name in ("bvh", "hybrid", "crsh", "frustum"):
+    for name in ("bvh", "hybrid", "crsh", "frustum", "classify"):
         frame, totals = cornell[name]["frames"][0], cornell[name]["totals"]
         for kind in ("shadow", "reflection", "refraction"):
             assert 0 < frame["tests"]["ray_triangle"][kind] < 0.7 * frame["rays"][kind] * 2504, (name, kind)
@@ -72,7 +72,7 @@ def test_hierarchies_test_less(cornell):
         assert totals["tests_per_ray"] < 2504
 
 
-@pytest.mark.parametrize("strategy", ["hybrid", "crsh", "rsh", "frustum"])
+@pytest.mark.parametrize("strategy", ["hybrid", "crsh", "rsh", "frustum", "classify"])
 def test_levels_add_up(cornell, strategy):
     """Node tests by level, root first, sum to the tests of their kind."""
     tests = cornell[strategy]["frames"][0]["tests"]
@@ -82,7 +82,7 @@ def test_levels_add_up(cornell, strategy):
     assert sum(spent.values()) > 0
 
 
-@pytest.mark.parametrize("strategy", ["hybrid", "crsh", "rsh", "frustum"])
+@pytest.mark.parametrize("strategy", ["hybrid", "crsh", "rsh", "frustum", "classify"])
 def test_generations_tell_what_was_built(cornell, strategy):
     frame = cornell[strategy]["frames"][0]
     assert frame["generations"]
@@ -180,7 +180,7 @@ def test_stats_elsewhere(sheaf, tmp_path):
     assert "stats.json" in run.stderr
 
 
-@pytest.mark.parametrize("strategy", ["crsh", "rsh", "frustum"])
+@pytest.mark.parametrize("strategy", ["crsh", "rsh", "frustum", "classify"])
 def test_pairs_of_every_level_are_told(cornell, strategy):
     """Root first. A pair of a node that has fewer than four children is made, and found not to be there: no test."""
     frame = cornell[strategy]["frames"][0]

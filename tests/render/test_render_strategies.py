@@ -7,7 +7,8 @@ import pytest
 from rendering import SCENE_NAMES, Sheaf
 
 STRATEGIES = {"bvh": (), "hybrid": (), "hybrid sorted": ("--sort", "on"), "hybrid unsorted": ("--sort", "off"), "crsh": (),
-              "rsh": (), "frustum": (), "frustum unsorted": ("--sort", "off"), "brute": (), "rayquery": ()}
+              "rsh": (), "frustum": (), "frustum unsorted": ("--sort", "off"), "classify": (), "brute": (),
+              "rayquery": ()}
 FRAME = 29  # of an animated scene, one in the middle
 OPTIONS = ("--frames", FRAME, "--aov", "id")
 
@@ -44,7 +45,8 @@ def test_every_strategy_gives_the_same_pixels(sheaf, strategies, scene):
 @pytest.mark.parametrize("scene", ["whitted", "cornell"])
 def test_deeper_finer_and_more_samples(sheaf, strategies, scene):
     """Two samples a pixel, eight generations, every ray followed: long lists, deep media."""
-    few = {name: strategies[name] for name in ("bvh", "hybrid", "hybrid sorted", "hybrid unsorted", "crsh", "frustum")}
+    names = ("bvh", "hybrid", "hybrid sorted", "hybrid unsorted", "crsh", "frustum", "classify")
+    few = {name: strategies[name] for name in names}
     pictures = render_all(sheaf, scene, few, "--spp", 2, "--depth", 8, "--cutoff", 0, size="50x31")
     for name, picture in pictures.items():
         assert np.array_equal(picture.rgba.view(np.uint16), pictures["bvh"].rgba.view(np.uint16)), name

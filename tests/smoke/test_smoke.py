@@ -31,6 +31,7 @@ def test_strategies_give_the_same_bytes(scene: str, tmp_path: pathlib.Path) -> N
     frame = stats["frames"][0]
     assert frame["rays"]["primary"] == 64 * 36
     assert frame["tests"]["ray_triangle"]["shadow"] > 0
-    for options in (["hybrid", "--sort", "on"], ["hybrid", "--sort", "off"], ["crsh"], ["rsh"], ["frustum"]):
+    others = (["hybrid", "--sort", "on"], ["hybrid", "--sort", "off"], ["crsh"], ["rsh"], ["frustum"], ["classify"])
+    for options in others:
         got, _ = rendered(scene, tmp_path / "_".join(options), "--strategy", *options)
         assert (got == wanted).all(), options

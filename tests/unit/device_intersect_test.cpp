@@ -230,7 +230,8 @@ TEST(DeviceIntersect, StrategiesGiveTheSameBytes) {
     const auto nearest = oracle.trace(gpu::KIND_REFLECTION, subject.rays);
     const auto shadowed = oracle.trace(gpu::KIND_SHADOW, subject.rays);
     const auto triangles = oracle.triangles();
-    for (const auto strategy : {Strategy::bvh, Strategy::hybrid, Strategy::rsh, Strategy::crsh, Strategy::frustum}) {
+    for (const auto strategy :
+         {Strategy::bvh, Strategy::hybrid, Strategy::rsh, Strategy::crsh, Strategy::frustum, Strategy::classify}) {
       SCOPED_TRACE(subject.name + std::string(", ") + name_of(strategy));
       DeviceWorld world(scene_of(subject.mesh), options_for(strategy, subject.rays.size(), 4));
       ASSERT_GE(world.memory().capacity, subject.rays.size());
@@ -252,8 +253,8 @@ TEST(DeviceIntersect, ListsOfAnyLengthAreTracedWhole) {
   const auto& subject = all.front();
   DeviceWorld oracle(scene_of(subject.mesh), options_for(Strategy::brute, subject.rays.size()));
   const auto nearest = oracle.trace(gpu::KIND_REFLECTION, subject.rays);
-  for (const auto strategy :
-       {Strategy::brute, Strategy::bvh, Strategy::hybrid, Strategy::rsh, Strategy::crsh, Strategy::frustum}) {
+  for (const auto strategy : {Strategy::brute, Strategy::bvh, Strategy::hybrid, Strategy::rsh, Strategy::crsh,
+                              Strategy::frustum, Strategy::classify}) {
     DeviceWorld world(scene_of(subject.mesh), options_for(strategy, subject.rays.size()));
     for (const std::size_t n : {0, 1, 2, 7, 8, 9, 63, 64, 65, 127, 128, 129, 1023, 1024, 1025, 2049}) {
       Rays rays(subject.rays.begin(), subject.rays.begin() + static_cast<std::ptrdiff_t>(n));

@@ -132,7 +132,8 @@ TEST(DeviceWatertight, NoStrategyLeaks) {
   constexpr std::size_t count = 20000;
   const Mesh mesh = icosphere(2);
   const Rays rays = seam_rays(mesh, 0.9, {0, 0, 0}, count, 77);
-  for (const auto strategy : {Strategy::brute, Strategy::hybrid, Strategy::rsh, Strategy::crsh, Strategy::frustum}) {
+  for (const auto strategy :
+       {Strategy::brute, Strategy::hybrid, Strategy::rsh, Strategy::crsh, Strategy::frustum, Strategy::classify}) {
     DeviceWorld world = world_of(mesh, strategy, count);
     EXPECT_EQ(leaks(world, gpu::KIND_REFLECTION, rays), 0U) << name_of(strategy);
     EXPECT_EQ(leaks(world, gpu::KIND_SHADOW, rays), 0U) << name_of(strategy);
