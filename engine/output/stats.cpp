@@ -72,18 +72,12 @@ Json frame_json(const FrameStats& frame) {
   for (const auto& [name, milliseconds] : frame.stages_ms) stages[name] = milliseconds;
   Json generations = Json::array();
   for (const GenerationStats& generation : frame.generations) generations.push_back(generation_json(generation));
-  return {{"frame", frame.frame},
-          {"time_s", frame.time_s},
-          {"wall_ms", frame.wall_ms},
-          {"peak_device_mib", frame.peak_device_mib},
-          {"dispatches", frame.dispatches},
-          {"counted", frame.counted},
-          {"repeated", frame.repeated},
-          {"stages", std::move(stages)},
-          {"rays", all_kinds(frame.rays)},
-          {"hits", all_kinds(frame.hits)},
-          {"tests", tests_of(frame)},
-          {"generations", std::move(generations)}};
+  return {{"frame", frame.frame},           {"time_s", frame.time_s},
+          {"wall_ms", frame.wall_ms},       {"peak_device_mib", frame.peak_device_mib},
+          {"dispatches", frame.dispatches}, {"counted", frame.counted},
+          {"repeated", frame.repeated},     {"stages", std::move(stages)},
+          {"rays", all_kinds(frame.rays)},  {"hits", all_kinds(frame.hits)},
+          {"tests", tests_of(frame)},       {"generations", std::move(generations)}};
 }
 
 // Sums for the totals. Rays and brute force appear twice: of all frames, and of those whose tests were counted, since

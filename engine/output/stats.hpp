@@ -39,7 +39,7 @@ struct FrameStats {
   std::int64_t frame = 0;
   // wall_ms: from the request to the pixels; writing runs beside the next frame.
   double time_s = 0, wall_ms = 0, peak_device_mib = 0;
-  std::uint64_t dispatches = 0;  // of kernels, also over lists that turn out empty
+  std::uint64_t dispatches = 0;                           // of kernels, also over lists that turn out empty
   std::vector<std::pair<std::string, double>> stages_ms;  // pipeline order; a stage left out is absent
   PerKind<std::uint64_t> rays{}, hits{};
   PerKind<std::uint64_t> node_object{}, ray_box{}, ray_triangle{};  // meaningful only where counted
