@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Indirect dispatch arguments. Workgroups past 32768 are folded into y (see global_group).
-BUFFER(ROLE_ARGS, writeonly, uint, args);
+// Indirect dispatch arguments. Workgroups past a row are folded into y (see global_group).
+BUFFER(ROLE_ARGS, coherent, uint, args);
+
+const uint ROW = 32768u;
+uvec2 folded(uint groups) { return uvec2(min(groups, ROW), (groups + ROW - 1u) / ROW); }
 
 void set_args(uint record, uint groups) {
-  args[3u * record] = min(groups, 32768u);
-  args[3u * record + 1u] = (groups + 32767u) / 32768u;
+  uvec2 size = folded(groups);
+  args[3u * record] = size.x;
+  args[3u * record + 1u] = size.y;
   args[3u * record + 2u] = 1u;
+}
+
+// As many groups at least, of a record that is set: many may raise it at once.
+void raise_args(uint record, uint groups) {
+  uvec2 size = folded(groups);
+  atomicMax(args[3u * record], size.x);
+  atomicMax(args[3u * record + 1u], size.y);
 }
 
 uint groups_of(uint items, uint size) { return (items + size - 1u) / size; }

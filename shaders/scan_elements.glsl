@@ -6,10 +6,7 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "args.glsl"
-layout(push_constant) uniform Push {
-  uint kind;
-  uint key_bits;
-} push;
+layout(push_constant) uniform Push { uint kind; } push;
 
 #if defined(SCAN_COMPACT)
 // Slots that hold a ray → their list, in slot order.

@@ -13,6 +13,7 @@
 #include "candidate.glsl"
 #include "results.glsl"
 #include "lists.glsl"
+#include "args.glsl"
 #include "counting.glsl"
 #include "ray_node.glsl"
 #include "visit.glsl"
@@ -21,7 +22,6 @@ BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_WORK, coherent, uint, work);
-BUFFER(ROLE_ARGS, coherent, uint, args);
 layout(push_constant) uniform Push {
   uint kind;
   uint most_effort;
@@ -72,8 +72,7 @@ void give_up(uint bundle) {
   if (lane == 0u) {
     uint loose = atomicAdd(counters[COUNT_LOOSE], 1u);
     work[loose] = bundle;
-    atomicMax(args[3u * ARGS_LOOSE], min(loose + 1u, 32768u));
-    atomicMax(args[3u * ARGS_LOOSE + 1u], loose / 32768u + 1u);
+    raise_args(ARGS_LOOSE, loose + 1u);
   }
 }
 

@@ -20,10 +20,10 @@ CellWalk::CellWalk(const TraceContext& c, std::uint32_t frustum_sets)
     : context_(c), ranges_(c.device, "pairs_ranges"), compact_(c.device, "open"), single_(c, false) {
   const std::vector<SpecConstant> counting{{6, c.counted}};
   open_ = Kernel(c.device, "pairs_open", counting);
-  const std::uint32_t lanes = std::min(c.device.limits().subgroup, gpu::BUNDLE);
+  const auto lanes = lane_constants(c.device);
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
-    constants.insert(constants.end(), {{0, lanes}, {10, lanes}, {11, gpu::BUNDLE / lanes}});
+    constants.insert(constants.end(), lanes.begin(), lanes.end());
     return Kernel(c.device, "intersect_packets", constants);
   };
   nearest_ = make(false);

@@ -13,13 +13,13 @@ class Compact {
   void record(Recorder& recorder, const RayList& list, std::uint32_t kind) const {
     recorder.stage("compact");
     list.bind(recorder);
-    scan_.record(recorder, {kind, 0}, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS);
+    scan_.record(recorder, {kind}, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS);
   }
   /// A list whose number of slots the host knows.
   void record_all(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t slots) const {
     recorder.stage("compact");
     list.bind(recorder);
-    scan_.record_blocks(recorder, {kind, 0}, (slots + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
+    scan_.record_blocks(recorder, {kind}, (slots + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
   }
 
  private:

@@ -11,8 +11,8 @@
 namespace sheaf {
 
 struct ScanPush {
-  std::uint32_t kind = 0, key_bits = 0;
-  std::uint32_t choice = 0;  // of the walks' elements (cell_elements.glsl), which have other names for all three
+  std::uint32_t kind = 0;
+  std::uint32_t second = 0, third = 0;  // of the walks' elements alone (cell_elements.glsl), which name all three
 };
 
 class Scan {

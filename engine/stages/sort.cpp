@@ -5,6 +5,16 @@
 #include <bit>
 
 namespace sheaf {
+
+void record_bounds(Recorder& recorder, const Kernel& kernel, std::uint32_t kind, std::uint32_t args) {
+  struct {
+    std::uint32_t kind, reset;
+  } push{kind, 1};
+  recorder.dispatch(kernel, push, 1);
+  push.reset = 0;
+  recorder.dispatch_indirect(kernel, push, args);
+}
+
 KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays) {
   const auto log2 = static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(rays, 1)));
   KeyLayout layout;
@@ -61,12 +71,7 @@ void SortRays::record_keys(Recorder& recorder, const TraceContext& context, std:
 void SortRays::record(Recorder& recorder, const TraceContext& context, std::uint32_t kind) const {
   const RayMemory& memory = context.memory;
   recorder.stage("hash");
-  struct {
-    std::uint32_t kind, reset;
-  } bounds{kind, 1};
-  recorder.dispatch(bounds_, bounds, 1);
-  bounds.reset = 0;
-  recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_BLOCKS);
+  record_bounds(recorder, bounds_, kind, gpu::ARGS_BLOCKS);
   record_keys(recorder, context, kind);
   record_order(recorder, context, kind, key_layout(kind, context.scene.lights(), memory.tile_pixels).bits());
 }
@@ -79,7 +84,7 @@ void SortRays::record_order(Recorder& recorder, const TraceContext& context, std
   recorder.bind(ROLE_SKELETON, memory.skeleton);
   recorder.bind(ROLE_SCAN_OUT, memory.order_kept);
   recorder.stage("compress");
-  const ScanPush scan{kind, key_bits};
+  const ScanPush scan{kind};
   compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
   recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
 

@@ -18,6 +18,9 @@ struct KeyLayout {
 /// to 7 %.
 [[nodiscard]] KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays);
 
+/// Bounds of a list's rays, over which keys are laid: `kernel` first resets them.
+void record_bounds(Recorder& recorder, const Kernel& kernel, std::uint32_t kind, std::uint32_t args);
+
 class SortRays {
  public:
   SortRays() = default;

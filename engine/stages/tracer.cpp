@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "stages/tracer.hpp"
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "stages/intersect_brute.hpp"
 #include "stages/traverse_bundles.hpp"
@@ -16,6 +18,11 @@ std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hi
   const bool translucent = c.features.translucent() || c.features.masked;
   return {{1, any_hit},   {2, c.features.masked},       {3, any_hit && translucent},
           {6, c.counted}, {7, c.settings.layers.tests}, {9, c.features.textured}};
+}
+
+std::vector<SpecConstant> lane_constants(const Device& device) {
+  const std::uint32_t lanes = std::min(device.limits().subgroup, gpu::BUNDLE);
+  return {{0, lanes}, {10, lanes}, {11, gpu::BUNDLE / lanes}};
 }
 
 std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {

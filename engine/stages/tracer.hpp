@@ -27,6 +27,9 @@ struct TraceContext {
 /// Specialization constants of every kernel that intersects (shaders/candidate.glsl, counting.glsl, textures.glsl).
 [[nodiscard]] std::vector<SpecConstant> candidate_constants(const TraceContext& context, bool any_hit);
 
+/// Of kernels whose workgroup is a subgroup that carries a bundle (shaders/bundle_rays.glsl, lanes.glsl).
+[[nodiscard]] std::vector<SpecConstant> lane_constants(const Device& device);
+
 class Tracer {
  public:
   virtual ~Tracer() = default;

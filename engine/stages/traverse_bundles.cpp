@@ -18,10 +18,10 @@ constexpr std::uint32_t most_effort = 250;
 TraverseBundles::TraverseBundles(const TraceContext& c)
     : context_(c), bundles_(c.device, "rays_hierarchy_bundles"), loose_(c.device, "loose"), single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
-  const std::uint32_t lanes = std::min(c.device.limits().subgroup, gpu::BUNDLE);
+  const auto lanes = lane_constants(c.device);
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
-    constants.insert(constants.end(), {{0, lanes}, {10, lanes}, {11, gpu::BUNDLE / lanes}});
+    constants.insert(constants.end(), lanes.begin(), lanes.end());
     return Kernel(c.device, "traverse_bundles", constants);
   };
   nearest_ = make(false);
@@ -42,7 +42,7 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
     float widest;
   } bounds{kind, kind == gpu::KIND_SHADOW ? widest_shadow : widest};
   recorder.dispatch_indirect(bundles_, bounds, gpu::ARGS_BUNDLE_RUNS);
-  loose_.record(recorder, {kind, 0}, gpu::ARGS_BUNDLE_BLOCKS);
+  loose_.record(recorder, {kind}, gpu::ARGS_BUNDLE_BLOCKS);
 
   recorder.stage("traverse");
   const bool shadow = kind == gpu::KIND_SHADOW;

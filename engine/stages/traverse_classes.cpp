@@ -25,10 +25,9 @@ TraverseClasses::TraverseClasses(const TraceContext& c)
       offsets_(c.device, "candidates"),
       packets_(c.device, "class_packets"),
       walk_(c, 2) {
-  const std::uint32_t lanes = std::min(c.device.limits().subgroup, gpu::BUNDLE);
-  const std::vector<SpecConstant> constants{{0, lanes}, {10, lanes}};
-  bounds_ = Kernel(c.device, "classify_bounds", constants);
-  frustums_ = Kernel(c.device, "classify_frustums", constants);
+  const auto lanes = lane_constants(c.device);
+  bounds_ = Kernel(c.device, "classify_bounds", lanes);
+  frustums_ = Kernel(c.device, "classify_frustums", lanes);
   const std::uint64_t cells = std::uint64_t{walk_.cell_room()} + 1;
   class_bounds_ = Buffer(c.device, "class bounds", 6 * 10 * 4);
   ray_cells_ = Buffer(c.device, "cells of rays", std::uint64_t{c.memory.capacity} * 4);
@@ -42,12 +41,7 @@ void TraverseClasses::sort(Recorder& recorder, std::uint32_t kind) {
   recorder.bind(ROLE_CLASS_BOUNDS, class_bounds_);
   recorder.bind(ROLE_KEYS, context_.memory.keys);
   recorder.stage("hash");
-  struct {
-    std::uint32_t kind, reset;
-  } bounds{kind, 1};
-  recorder.dispatch(bounds_, bounds, 1);
-  bounds.reset = 0;
-  recorder.dispatch_indirect(bounds_, bounds, gpu::ARGS_RAYS);
+  record_bounds(recorder, bounds_, kind, gpu::ARGS_RAYS);
   struct {
     std::uint32_t kind, sorted;
   } keys{kind, 0};

@@ -35,7 +35,7 @@ void TraverseFrustums::cut_packets(Recorder& recorder, std::uint32_t kind, bool 
   const std::uint32_t bits = key_layout(kind, context_.scene.lights(), rays).bits();
   const struct { std::uint32_t kind, dropped; } push{kind, sorted ? bits - std::min(bits, shared_bits(rays)) : 32};
   recorder.dispatch_indirect(keys_kernel_, push, gpu::ARGS_RAYS);
-  packets_.record(recorder, {kind, 0}, gpu::ARGS_BLOCKS);
+  packets_.record(recorder, {kind}, gpu::ARGS_BLOCKS);
 }
 
 void TraverseFrustums::record_walk(Recorder& recorder, std::uint32_t kind, WalkRange packets) {

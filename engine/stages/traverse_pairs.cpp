@@ -75,7 +75,7 @@ void TraversePairs::test(Recorder& recorder, const Walk& walk, std::uint32_t lev
   recorder.bind(ROLE_PAIRS_NEXT, survivors_[level]);
   recorder.bind(ROLE_BLOCK_SUMS, block_sums_);
   recorder.fill(context_.memory.counters, candidates, gpu::COUNT_PAIRS * 4, 4);
-  compact_.record_blocks(recorder, {walk.kind, 0}, (candidates + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
+  compact_.record_blocks(recorder, {walk.kind}, (candidates + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
   recorder.bind(ROLE_BLOCK_SUMS, context_.memory.block_sums);
 }
 

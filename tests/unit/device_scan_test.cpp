@@ -235,7 +235,7 @@ TEST(DeviceCompact, LooseBundlesAndTightOnesEachKeepTheirOrder) {
       recorder.bind(ROLE_COUNTERS, words);
       recorder.bind(ROLE_ARGS, args);
       recorder.bind(ROLE_BLOCK_SUMS, sums.buffer());
-      scan.record(recorder, {gpu::KIND_REFLECTION, 0}, gpu::ARGS_BUNDLE_BLOCKS);
+      scan.record(recorder, {gpu::KIND_REFLECTION}, gpu::ARGS_BUNDLE_BLOCKS);
       recorder.submit_and_wait();
       const Words got = work.values(), loose_ones = places_of(is_loose, 1), tight_ones = places_of(is_loose, 0);
       const auto loose = static_cast<std::uint32_t>(loose_ones.size());

@@ -80,14 +80,14 @@ class Chain {
       r.fill(*scratch, 0xEEEEEEEEU);
   }
   void compress() {
-    compress_.record(world_.recorder(), {kind, 32}, gpu::ARGS_BLOCKS);
+    compress_.record(world_.recorder(), {kind}, gpu::ARGS_BLOCKS);
     world_.recorder().dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
   }
   void sort(std::uint32_t bits) { in_alt_ = sort_.record_passes(world_.recorder(), world_.memory(), bits); }
   void decompress() {
     world_.recorder().dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);
-    starts_.record(world_.recorder(), {kind, 32}, gpu::ARGS_CHUNKS);
-    segmented_.record(world_.recorder(), {kind, 32}, gpu::ARGS_BLOCKS);
+    starts_.record(world_.recorder(), {kind}, gpu::ARGS_CHUNKS);
+    segmented_.record(world_.recorder(), {kind}, gpu::ARGS_BLOCKS);
   }
 
   std::uint32_t counter(std::uint32_t index) {
