@@ -36,7 +36,7 @@ Beam load_bundle() {
   [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
     uint k = v * LANES + lane;
     uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
-    Ray ray = LOAD_RAY(rays, slot);
+    Ray ray = load_ray(push.rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
     float limit = k < ray_count ? ray.tmax : -INFINITY;
     PUT(r_origin, v, s.origin);
@@ -183,5 +183,5 @@ void store(uint v) {
     for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = sum[c];
   }
   if (PIXEL_COUNTED)
-    count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), node_tests + (box_tests + triangle_tests) / VECTORS);
+    count_pixel(load_ray_pixel(push.rays, slot), node_tests + (box_tests + triangle_tests) / VECTORS);
 }

@@ -14,12 +14,8 @@
 #include "accumulate.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_HITS, readonly, uvec2, hits);
 BUFFER(ROLE_ORDER, readonly, uint, order);
-BUFFER(ROLE_SHADOW_RAYS, writeonly, float, shadow_rays);
-BUFFER(ROLE_REFLECTION_RAYS, writeonly, float, reflection_rays);
-BUFFER(ROLE_REFRACTION_RAYS, writeonly, float, refraction_rays);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 
 layout(constant_id = 1) const bool SHADOWS = true;
@@ -30,6 +26,10 @@ layout(constant_id = 5) const bool VOLUMES = true;
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
   uint last;        // 1: no further generation
+  layout(offset = PUSH_RAYS) uvec2 rays;
+  uvec2 shadow_rays;
+  uvec2 reflection_rays;
+  uvec2 refraction_rays;
 } push;
 
 struct Parent {
@@ -43,13 +43,15 @@ struct Parent {
 
 Parent load_parent(uint slot) {
   Parent p;
-  p.ray = LOAD_RAY(rays, slot);
-  p.weight = vec3(RAYS(rays, RAY_WEIGHT, slot), RAYS(rays, RAY_WEIGHT + 1u, slot), RAYS(rays, RAY_WEIGHT + 2u, slot));
-  p.pixel = floatBitsToUint(RAYS(rays, RAY_PIXEL, slot));
-  p.medium = floatBitsToUint(RAYS(rays, RAY_MEDIUM, slot));
-  p.coverage = RAYS(rays, RAY_COVERAGE, slot);
-  p.cone_width = TEXTURED ? RAYS(rays, RAY_CONE_WIDTH, slot) : 0.0;
-  p.cone_spread = TEXTURED ? RAYS(rays, RAY_CONE_SPREAD, slot) : 0.0;
+  p.ray = load_ray(push.rays, slot);
+  RayLoad carried = load_ray_load(push.rays, slot);
+  p.weight = carried.weight;
+  p.coverage = carried.coverage;
+  p.medium = carried.medium;
+  p.pixel = load_ray_pixel(push.rays, slot);
+  vec2 cone = TEXTURED ? load_ray_cone(push.rays, slot) : vec2(0);
+  p.cone_width = cone.x;
+  p.cone_spread = cone.y;
   return p;
 }
 
@@ -98,12 +100,12 @@ vec3 reflectance(Surface s, vec3 f0, vec3 v, vec3 l) {  // f · (n·l)
   return (diffuse + f * (d * visibility)) * nl;
 }
 
-void no_ray_shadow(uint slot) { RAYS(shadow_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX); }
+void no_ray_shadow(uint slot) { store_no_ray(push.shadow_rays, slot); }
 void no_ray_reflection(uint slot) {
-  if (REFLECTIONS) RAYS(reflection_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX);
+  if (REFLECTIONS) store_no_ray(push.reflection_rays, slot);
 }
 void no_ray_refraction(uint slot) {
-  if (REFRACTIONS) RAYS(refraction_rays, RAY_PIXEL, slot) = uintBitsToFloat(NO_INDEX);
+  if (REFRACTIONS) store_no_ray(push.refraction_rays, slot);
 }
 
 void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec3 v, uint pixel) {
@@ -128,9 +130,7 @@ void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec
   } else {
     direction = tmax > 0.0 ? direction / tmax : -l;
   }
-  STORE_RAY(shadow_rays, slot, origin, direction, tmin, tmax, carried);
-  RAYS(shadow_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
-  RAYS(shadow_rays, RAY_MEDIUM, slot) = uintBitsToFloat(index);
+  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayLoad(carried, 0.0, index));
 }
 
 // What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's curvature, times
@@ -149,15 +149,8 @@ void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
   if (!(dot(d, s.geometric) > 0.0)) d = reflect(p.ray.direction, s.geometric);
   d = safe_normalize(d, s.geometric);
   vec3 o = offset_origin(s, s.geometric, 0.0);
-  STORE_RAY(reflection_rays, slot, o, d, 0.0, INFINITY, weight);
-  RAYS(reflection_rays, RAY_PIXEL, slot) = uintBitsToFloat(p.pixel);
-  RAYS(reflection_rays, RAY_MEDIUM, slot) = uintBitsToFloat(p.medium);
-  RAYS(reflection_rays, RAY_COVERAGE, slot) = 0.0;
-  if (TEXTURED) {
-    vec2 cone = cone_after(p, s, t, 1.0, 2.0);
-    RAYS(reflection_rays, RAY_CONE_WIDTH, slot) = cone.x;
-    RAYS(reflection_rays, RAY_CONE_SPREAD, slot) = cone.y;
-  }
+  store_ray(push.reflection_rays, slot, Ray(o, d, 0.0, INFINITY), p.pixel, RayLoad(weight, 0.0, p.medium));
+  if (TEXTURED) store_ray_cone(push.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
 }
 
 void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel, vec2 cone) {
@@ -166,14 +159,8 @@ void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint
     return;
   }
   vec3 o = offset_origin(s, -s.geometric, 0.0);
-  STORE_RAY(refraction_rays, slot, o, direction, 0.0, INFINITY, weight);
-  RAYS(refraction_rays, RAY_PIXEL, slot) = uintBitsToFloat(pixel);
-  RAYS(refraction_rays, RAY_MEDIUM, slot) = uintBitsToFloat(medium);
-  RAYS(refraction_rays, RAY_COVERAGE, slot) = coverage;
-  if (TEXTURED) {
-    RAYS(refraction_rays, RAY_CONE_WIDTH, slot) = cone.x;
-    RAYS(refraction_rays, RAY_CONE_SPREAD, slot) = cone.y;
-  }
+  store_ray(push.refraction_rays, slot, Ray(o, direction, 0.0, INFINITY), pixel, RayLoad(weight, coverage, medium));
+  if (TEXTURED) store_ray_cone(push.refraction_rays, slot, cone);
 }
 
 float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : load_material(volume_material(stack & 0xFFu)).ior; }

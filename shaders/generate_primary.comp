@@ -9,7 +9,6 @@
 #include "camera.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_RAYS, writeonly, float, rays);
 BUFFER(ROLE_HITS, writeonly, uvec2, hits);
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_VISIBILITY, readonly, uvec2, visibility);
@@ -18,6 +17,7 @@ BUFFER(ROLE_SAMPLE_PLACES, readonly, vec2, sample_places);
 layout(constant_id = 1) const bool RASTER = true;
 layout(constant_id = 2) const bool ADAPTIVE = false;
 layout(constant_id = 9) const bool TEXTURED = true;
+layout(push_constant) uniform Push { layout(offset = PUSH_RAYS) uvec2 rays; } push;
 
 // Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
 // them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
@@ -53,13 +53,7 @@ void main() {
   }
   uint pixel = at.y * frame.tile_width + at.x;
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, place);
-  STORE_RAY(rays, i, ray.origin, ray.direction, ray.tmin, ray.tmax, vec3(1));
-  RAYS(rays, RAY_PIXEL, i) = uintBitsToFloat(pixel);
-  RAYS(rays, RAY_MEDIUM, i) = 0.0;
-  RAYS(rays, RAY_COVERAGE, i) = 1.0;
-  if (TEXTURED) {
-    RAYS(rays, RAY_CONE_WIDTH, i) = frame.cone_width;
-    RAYS(rays, RAY_CONE_SPREAD, i) = frame.cone_spread;
-  }
+  store_ray(push.rays, i, ray, pixel, RayLoad(vec3(1), 1.0, 0u));
+  if (TEXTURED) store_ray_cone(push.rays, i, vec2(frame.cone_width, frame.cone_spread));
   hits[i] = RASTER ? visibility[pixel] : uvec2(NO_INDEX);
 }

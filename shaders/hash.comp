@@ -9,7 +9,6 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
@@ -17,6 +16,7 @@ layout(push_constant) uniform Push {
   uint kind;
   uint bits;        // a coordinate
   uint light_bits;
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 
 vec3 batch_place(vec3 o) {  // in [0, 1]³; a batch without extent along an axis has one cell there
@@ -57,6 +57,6 @@ void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint slot = order[i];
-  Ray ray = LOAD_RAY(rays, slot);
-  keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, floatBitsToUint(RAYS(rays, RAY_MEDIUM, slot))) : secondary_key(ray);
+  Ray ray = load_ray(push.rays, slot);
+  keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, load_ray_medium(push.rays, slot)) : secondary_key(ray);
 }

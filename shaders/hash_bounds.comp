@@ -8,9 +8,11 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
-layout(push_constant) uniform Push { uint kind; uint reset; } push;
+layout(push_constant) uniform Push {
+  uint kind; uint reset;
+  layout(offset = PUSH_RAYS) uvec2 rays;
+} push;
 
 void main() {
   if (push.reset != 0u) {
@@ -21,8 +23,7 @@ void main() {
   uint block = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint i = block; i < min(block + SCAN_RUN, count); ++i) {
-    uint slot = order[i];
-    vec3 o = vec3(RAYS(rays, RAY_ORIGIN, slot), RAYS(rays, RAY_ORIGIN + 1u, slot), RAYS(rays, RAY_ORIGIN + 2u, slot));
+    vec3 o = load_ray(push.rays, order[i]).origin;
     lo = min(lo, o);
     hi = max(hi, o);
   }

@@ -11,20 +11,20 @@
 #include "results.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 layout(constant_id = 1) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
   uint first;
   uint last;
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint slot = order[i];
-  Ray ray = LOAD_RAY(rays, slot);
+  Ray ray = load_ray(push.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
@@ -56,5 +56,5 @@ void main() {
   else
     store_nearest(slot, best);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
-  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), tests);
+  count_pixel(load_ray_pixel(push.rays, slot), tests);
 }

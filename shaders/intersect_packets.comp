@@ -17,7 +17,6 @@
 #include "counting.glsl"
 #include "visit.glsl"
 #include "beam.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_PACKETS, readonly, uvec2, packets);
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);
@@ -27,6 +26,7 @@ layout(push_constant) uniform Push {
   uint kind;
   uint room;   // pairs of a half
   uint level;  // past the object hierarchy's
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 #include "bundle_rays.glsl"
 

@@ -11,7 +11,6 @@
 #include "results.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 layout(constant_id = 1) const bool ANY_HIT = false;
@@ -19,6 +18,7 @@ layout(push_constant) uniform Push {
   uint kind;
   uint pairs;
   uint reset;   // 1: mark every ray of the list as without a hit instead
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 
 void main() {
@@ -36,7 +36,7 @@ void main() {
   uint slot = order[pair.x];
   uint64_t known = hits[slot];
   if (ANY_HIT && known != NO_HIT) return;  // blocked already: no test
-  Ray ray = LOAD_RAY(rays, slot);
+  Ray ray = load_ray(push.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Pending pending = NOTHING_PENDING;
   if (ANY_HIT) {
@@ -54,5 +54,5 @@ void main() {
     if (best.triangle != NO_INDEX) atomicMin(hits[slot], pack_hit(best.t, best.triangle));
   }
   count_tests(push.kind, STAT_RAY_TRIANGLE, 1u);
-  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), 1u);
+  count_pixel(load_ray_pixel(push.rays, slot), 1u);
 }

@@ -7,19 +7,19 @@
 #include "rays.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_HITS, readonly, uvec2, hits);
 BUFFER(ROLE_LAYERS, writeonly, float, layers);
+layout(push_constant) uniform Push { layout(offset = PUSH_RAYS) uvec2 rays; } push;
 
 void main() {
   uint i = global_index(), pixels = frame.tile_width * frame.tile_height;
   if (i >= pixels) return;
-  uint triangle = hits[i].x, pixel = floatBitsToUint(RAYS(rays, RAY_PIXEL, i));
+  uint triangle = hits[i].x, pixel = load_ray_pixel(push.rays, i);
   float words[LAYER_WORDS];
   for (uint w = 0u; w < LAYER_WORDS; ++w) words[w] = 0.0;
   words[LAYER_DEPTH] = INFINITY;
   if (triangle != NO_INDEX) {
-    Ray ray = LOAD_RAY(rays, i);
+    Ray ray = load_ray(push.rays, i);
     Corners corners = load_triangle(triangle);
     TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
     Material material;

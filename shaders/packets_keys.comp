@@ -9,20 +9,19 @@
 #include "lists.glsl"
 #include "triangle.glsl"
 #include "frustum.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_KEYS, readonly, uint, keys);
 BUFFER(ROLE_PACKET_KEYS, writeonly, uint, packet_keys);
 layout(push_constant) uniform Push {
   uint kind;
   uint dropped;  // bits of the hash; 32: no hash
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
-  vec3 d = vec3(RAYS(rays, RAY_DIRECTION, slot), RAYS(rays, RAY_DIRECTION + 1u, slot), RAYS(rays, RAY_DIRECTION + 2u, slot));
+  vec3 d = load_ray(push.rays, order[i]).direction;
   uint leading = push.dropped < 32u ? keys[i] >> push.dropped : 0u;
   packet_keys[i] = (leading << 3) | face_of(d);  // bits that are lost above join packets, never axes
 }

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Reading rays. RAYS(list, word, slot) addresses a structure of arrays of `frame.capacity` slots.
+// Reading and writing the rays of a list, which is known by its address: structures of RAY_WORDS, two words a load, so that what
+// a kernel needs of a ray comes from one cache line and no descriptor's bounds are checked (memory.glsl); behind the last of
+// `frame.capacity` structures the slots' pixels, one word each, since compaction asks for nothing else.
+#ifndef SHEAF_RAYS_GLSL
+#define SHEAF_RAYS_GLSL
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 layout(scalar, set = 0, binding = ROLE_FRAME) readonly buffer Block_frame { Frame frame; };
-
-#define RAYS(list, word, slot) list[(word) * frame.capacity + (slot)]
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { uint64_t pair[RAY_WORDS / 2]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayPixel { uint v; };
 
 struct Ray {
   vec3 origin;
@@ -11,20 +17,48 @@ struct Ray {
   float tmax;
 };
 
-#define LOAD_RAY(list, slot)                                                                                     \
-  Ray(vec3(RAYS(list, RAY_ORIGIN, slot), RAYS(list, RAY_ORIGIN + 1, slot), RAYS(list, RAY_ORIGIN + 2, slot)),    \
-      vec3(RAYS(list, RAY_DIRECTION, slot), RAYS(list, RAY_DIRECTION + 1, slot), RAYS(list, RAY_DIRECTION + 2, slot)), \
-      RAYS(list, RAY_TMIN, slot), RAYS(list, RAY_TMAX, slot))
+struct RayLoad {  // what the ray is for
+  vec3 weight;
+  float coverage;
+  uint medium;
+};
 
-#define STORE_RAY(list, slot, o, d, t0, t1, w)          \
-  RAYS(list, RAY_ORIGIN, slot) = (o).x;                 \
-  RAYS(list, RAY_ORIGIN + 1, slot) = (o).y;             \
-  RAYS(list, RAY_ORIGIN + 2, slot) = (o).z;             \
-  RAYS(list, RAY_DIRECTION, slot) = (d).x;              \
-  RAYS(list, RAY_DIRECTION + 1, slot) = (d).y;          \
-  RAYS(list, RAY_DIRECTION + 2, slot) = (d).z;          \
-  RAYS(list, RAY_TMIN, slot) = (t0);                    \
-  RAYS(list, RAY_TMAX, slot) = (t1);                    \
-  RAYS(list, RAY_WEIGHT, slot) = (w).x;                 \
-  RAYS(list, RAY_WEIGHT + 1, slot) = (w).y;             \
-  RAYS(list, RAY_WEIGHT + 2, slot) = (w).z
+// A list is at most 1 GiB (RayMemory), so offsets fit 32 bits.
+RayPairs ray_pairs(uvec2 list, uint slot) { return RayPairs(pack64(list) + uint64_t(slot * (4u * RAY_WORDS))); }
+RayPixel ray_pixel(uvec2 list, uint slot) { return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot))); }
+
+vec2 load_ray_pair(uvec2 list, uint slot, uint word) { return uintBitsToFloat(unpack32(ray_pairs(list, slot).pair[word / 2u])); }
+void store_ray_pair(uvec2 list, uint slot, uint word, float first, float second) {
+  ray_pairs(list, slot).pair[word / 2u] = pack64(floatBitsToUint(vec2(first, second)));
+}
+
+Ray load_ray(uvec2 list, uint slot) {
+  vec2 a = load_ray_pair(list, slot, RAY_ORIGIN), b = load_ray_pair(list, slot, RAY_ORIGIN + 2u),
+       c = load_ray_pair(list, slot, RAY_DIRECTION + 1u), d = load_ray_pair(list, slot, RAY_TMIN);
+  return Ray(vec3(a, b.x), vec3(b.y, c), d.x, d.y);
+}
+
+uint load_ray_medium(uvec2 list, uint slot) { return floatBitsToUint(load_ray_pair(list, slot, RAY_MEDIUM).x); }
+
+RayLoad load_ray_load(uvec2 list, uint slot) {
+  vec2 a = load_ray_pair(list, slot, RAY_WEIGHT), b = load_ray_pair(list, slot, RAY_WEIGHT + 2u);
+  return RayLoad(vec3(a, b.x), b.y, load_ray_medium(list, slot));
+}
+
+void store_ray(uvec2 list, uint slot, Ray ray, uint pixel, RayLoad carried) {
+  store_ray_pair(list, slot, RAY_ORIGIN, ray.origin.x, ray.origin.y);
+  store_ray_pair(list, slot, RAY_ORIGIN + 2u, ray.origin.z, ray.direction.x);
+  store_ray_pair(list, slot, RAY_DIRECTION + 1u, ray.direction.y, ray.direction.z);
+  store_ray_pair(list, slot, RAY_TMIN, ray.tmin, ray.tmax);
+  store_ray_pair(list, slot, RAY_WEIGHT, carried.weight.x, carried.weight.y);
+  store_ray_pair(list, slot, RAY_WEIGHT + 2u, carried.weight.z, carried.coverage);
+  store_ray_pair(list, slot, RAY_MEDIUM, uintBitsToFloat(carried.medium), 0.0);
+  ray_pixel(list, slot).v = pixel;
+}
+
+vec2 load_ray_cone(uvec2 list, uint slot) { return load_ray_pair(list, slot, RAY_CONE); }
+void store_ray_cone(uvec2 list, uint slot, vec2 cone) { store_ray_pair(list, slot, RAY_CONE, cone.x, cone.y); }
+
+uint load_ray_pixel(uvec2 list, uint slot) { return ray_pixel(list, slot).v; }
+void store_no_ray(uvec2 list, uint slot) { ray_pixel(list, slot).v = NO_INDEX; }
+#endif

@@ -6,15 +6,17 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "args.glsl"
-layout(push_constant) uniform Push { uint kind; } push;
+layout(push_constant) uniform Push {
+  uint kind;
+  layout(offset = PUSH_RAYS) uvec2 rays;
+} push;
 
 #if defined(SCAN_COMPACT)
 // Slots that hold a ray → their list, in slot order.
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, writeonly, uint, order);
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 uint scan_count() { return counters[COUNT_SLOTS + push.kind]; }
-uint scan_load(uint i) { return floatBitsToUint(RAYS(rays, RAY_PIXEL, i)) != NO_INDEX ? 1u : 0u; }
+uint scan_load(uint i) { return load_ray_pixel(push.rays, i) != NO_INDEX ? 1u : 0u; }
 void scan_store(uint i, uint before, uint own) {
   if (own != 0u) order[before] = i;
 }

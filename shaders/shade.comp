@@ -8,11 +8,11 @@
 #include "accumulate.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_SHADOW_RAYS, readonly, float, rays);
 BUFFER(ROLE_HITS, readonly, uvec2, hits);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
 layout(constant_id = 3) const bool TRANSLUCENT = true;
+layout(push_constant) uniform Push { layout(offset = PUSH_SHADOW_RAYS) uvec2 rays; } push;
 
 void main() {
   uint i = global_index();
@@ -21,10 +21,10 @@ void main() {
   bool blocked = hits[slot].x != NO_INDEX;
   count_tests(KIND_SHADOW, STAT_HITS, blocked ? 1u : 0u);
   if (blocked) return;
-  vec3 light = vec3(RAYS(rays, RAY_WEIGHT, slot), RAYS(rays, RAY_WEIGHT + 1u, slot), RAYS(rays, RAY_WEIGHT + 2u, slot));
+  vec3 light = load_ray_load(push.rays, slot).weight;
   if (TRANSLUCENT) {
     ivec3 stops = max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
     light *= exp2(-vec3(stops) / float(OPTICAL_STEP));
   }
-  accumulate_rgb(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), light);
+  accumulate_rgb(load_ray_pixel(push.rays, slot), light);
 }

@@ -25,12 +25,8 @@ using mat3 = glm::mat3;
 #define ROLE_INSTANCES 7
 #define ROLE_MATERIALS 14
 #define ROLE_LIGHTS 17
-#define ROLE_RAYS 19
 #define ROLE_HITS 20
 #define ROLE_ORDER 21
-#define ROLE_SHADOW_RAYS 22
-#define ROLE_REFLECTION_RAYS 23
-#define ROLE_REFRACTION_RAYS 24
 #define ROLE_ACCUMULATION 25
 #define ROLE_BLOCK_SUMS 26
 #define ROLE_KEYS 27
@@ -74,6 +70,15 @@ using mat3 = glm::mat3;
 #define ROLE_CELL_CUTS 65
 #define ROLE_COUNT 66
 
+// Lists of rays are known by address. Bound like the rest, their addresses lie in the push constants from this byte on.
+#define LIST_RAYS 0
+#define LIST_SHADOW_RAYS 1
+#define LIST_REFLECTION_RAYS 2
+#define LIST_REFRACTION_RAYS 3
+#define LIST_COUNT 4
+#define PUSH_RAYS 96
+#define PUSH_SHADOW_RAYS 104
+
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 
 // Kinds of ray, in the order of the stats.
@@ -82,20 +87,18 @@ SHEAF_CONST KIND_SHADOW = 1u;
 SHEAF_CONST KIND_REFLECTION = 2u;
 SHEAF_CONST KIND_REFRACTION = 3u;
 
-// Rays are structures of arrays: word w of ray i lies at w * capacity + i, so that a vector of rays loads consecutively.
+// A ray's words, in pairs (rays.glsl).
 SHEAF_CONST RAY_ORIGIN = 0u;     // 3 words
 SHEAF_CONST RAY_DIRECTION = 3u;  // 3 words, unit length
 SHEAF_CONST RAY_TMIN = 6u;
 SHEAF_CONST RAY_TMAX = 7u;
 SHEAF_CONST RAY_WEIGHT = 8u;     // 3 words; a shadow ray: the light it carries if nothing is in the way
-SHEAF_CONST RAY_PIXEL = 11u;     // index in the band; NO_INDEX: the slot holds no ray
-SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light
-SHEAF_CONST RAY_COVERAGE = 13u;
-SHEAF_CONST RAY_WORDS = 14u;
-// Only where textures are filtered: the ray's cone (SHADING.md, Texture filter).
-SHEAF_CONST RAY_CONE_WIDTH = 14u;
-SHEAF_CONST RAY_CONE_SPREAD = 15u;
-SHEAF_CONST RAY_WORDS_WITH_CONE = 16u;
+SHEAF_CONST RAY_COVERAGE = 11u;
+SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light. 13: unused
+SHEAF_CONST RAY_CONE = 14u;      // width and spread of the ray's cone, where textures are filtered (SHADING.md, Texture filter)
+SHEAF_CONST RAY_WORDS = 16u;
+// And behind the list's rays a word each: the ray's pixel in the tile; NO_INDEX: the slot holds no ray.
+SHEAF_CONST RAY_SLOT_BYTES = 4u * (RAY_WORDS + 1u);
 
 // Counters written by the device; one block, cleared at the start of a band.
 SHEAF_CONST COUNT_PARENTS = 0u;       // rays whose hits the next generate reads

@@ -11,7 +11,6 @@
 #include "lists.glsl"
 #include "counting.glsl"
 #include "single_ray.glsl"
-BUFFER(ROLE_RAYS, readonly, float, rays);
 BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_WORK, readonly, uint, work);
 layout(constant_id = 8) const bool LOOSE = false;
@@ -19,6 +18,7 @@ layout(constant_id = 8) const bool LOOSE = false;
 layout(push_constant) uniform Push {
   uint kind;
   uint first, count;  // of the list's rays; 0: all
+  layout(offset = PUSH_RAYS) uvec2 rays;
 } push;
 
 void main() {
@@ -33,7 +33,7 @@ void main() {
   }
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint slot = order[i];
-  Ray ray = LOAD_RAY(rays, slot);
+  Ray ray = load_ray(push.rays, slot);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   Tests tests = Tests(0u, 0u);
@@ -44,5 +44,5 @@ void main() {
     store_nearest(slot, best);
   count_tests(push.kind, STAT_RAY_BOX, tests.boxes);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests.triangles);
-  count_pixel(floatBitsToUint(RAYS(rays, RAY_PIXEL, slot)), tests.boxes + tests.triangles);
+  count_pixel(load_ray_pixel(push.rays, slot), tests.boxes + tests.triangles);
 }

@@ -119,7 +119,6 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
     leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels"
                     : settings.primary == PrimaryMethod::trace ? "--primary trace"
                                                                : "more than eight triangles a pixel: rays are cheaper");
-  plan.ray_words = features.textured ? gpu::RAY_WORDS_WITH_CONE : gpu::RAY_WORDS;
   if (!features.textured) leave("texture filter", "no textures");
   plan.deform = features.skinned || features.morphed;
   if (!plan.deform) leave("deform", "nothing is skinned or morphed over time");

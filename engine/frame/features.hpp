@@ -33,7 +33,6 @@ struct Features {
 struct Plan {
   bool shadows = false, reflections = false, refractions = false;
   bool adaptive = false;  // samples are spent pixel by pixel
-  std::uint32_t ray_words = 0;
   bool raster = true, deform = false, textured_normals = false;
   bool sorts = false, ray_hierarchy = false, object_hierarchy = false, bundles = false, packets = false,
        spheres = false;

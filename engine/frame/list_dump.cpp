@@ -17,7 +17,9 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "dump", std::min(scene.triangle_words().bytes(), piece_bytes), Kind::readback);
-  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * memory.ray_words * 4, Kind::readback);
+  // Never bound, so no binding's limit holds for it.
+  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_SLOT_BYTES, Kind::readback,
+                 vk::BufferUsageFlagBits::eShaderDeviceAddress);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
   counters_ = Buffer(device, "dump", gpu::COUNT_WORDS * 4, Kind::readback);
@@ -80,7 +82,7 @@ void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list,
                                        gpu::RAY_DIRECTION + 2, gpu::RAY_TMAX};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t slot = slots != 0 ? i : order[i];
-    for (const auto field : fields) rays.push_back(words[std::size_t{field} * memory_.capacity + slot]);
+    for (const auto field : fields) rays.push_back(words[slot * gpu::RAY_WORDS + field]);
     hits.push_back(record_of(&rays[rays.size() - 8], found[slot].x, std::bit_cast<float>(found[slot].y)));
   }
   writer.rays(generation, kind, rays, hits);

@@ -19,7 +19,7 @@ std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   if (plan.reflections) lists += 1;
   if (plan.refractions) lists += 2;
   // A slot: ray, hit, place in the order.
-  std::uint64_t bytes = lists * (plan.ray_words * 4 + 8 + 4) + pixel_bytes;
+  std::uint64_t bytes = lists * (gpu::RAY_SLOT_BYTES + 8 + 4) + pixel_bytes;
   if (features.translucent() || features.masked) bytes += 12;
   if (plan.sorts) bytes += sort_bytes;
   if (plan.packets) bytes += packet_bytes;
@@ -27,9 +27,19 @@ std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   return bytes;
 }
 
+// The rays themselves are known by address; everything else must fit one binding.
+std::uint64_t most_slots(std::uint64_t range, const RenderSettings& settings, std::uint64_t per_pixel) {
+  constexpr std::uint64_t bound_bytes =
+      12;  // a slot's chunk, optical depth or share of the ray hierarchy (and its top)
+  constexpr std::uint64_t top_bytes = (gpu::MAX_LEVELS + 1) * gpu::RAY_NODE_WORDS * 4;
+  const std::uint64_t accumulated = 32, layered = settings.layers.any_surface() ? gpu::LAYER_WORDS * 4 : 0;
+  return std::min((range - top_bytes) / bound_bytes, range / std::max(accumulated, layered) * per_pixel);
+}
+
 RayList make_list(const Device& device, const char* name, const RayMemory& m, bool optical_depth) {
   RayList list;
-  list.rays = Buffer(device, name, std::uint64_t{m.capacity} * m.ray_words * 4);
+  list.rays = Buffer(device, name, std::uint64_t{m.capacity} * gpu::RAY_SLOT_BYTES, Buffer::Kind::device,
+                     vk::BufferUsageFlagBits::eShaderDeviceAddress);
   list.hits = Buffer(device, name, std::uint64_t{m.capacity} * 8);
   list.order = Buffer(device, name, std::uint64_t{m.capacity} * 4);
   if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{m.capacity} * 12);
@@ -56,11 +66,10 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
   const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;
   std::uint64_t slots = std::min(budget / bytes_per_slot(plan, features), wanted);
-  slots = std::min(slots, device.limits().storage_range / (plan.ray_words * 4));
+  slots = std::min(slots, most_slots(device.limits().storage_range, settings, per_pixel));
   slots = std::min<std::uint64_t>(slots, std::uint64_t{1} << 24U);
   slots = std::max<std::uint64_t>(slots, std::max<std::uint64_t>(least_capacity, per_pixel));
   m.capacity = static_cast<std::uint32_t>(slots);
-  m.ray_words = plan.ray_words;
   m.tile_pixels = static_cast<std::uint32_t>(std::max<std::uint64_t>(slots / per_pixel, 1));
 
   m.shadow = make_list(device, "shadow rays", m, true);

@@ -15,7 +15,7 @@ namespace sheaf {
 struct RayList {
   Buffer rays, hits, order, optical_depth;
   void bind(Recorder& recorder) const {
-    recorder.bind(ROLE_RAYS, rays);
+    recorder.bind_rays(LIST_RAYS, rays);
     recorder.bind(ROLE_HITS, hits);
     recorder.bind(ROLE_ORDER, order);
     if (optical_depth) recorder.bind(ROLE_OPTICAL_DEPTH, optical_depth);
@@ -26,7 +26,6 @@ inline constexpr std::uint32_t max_records = 4096;
 
 struct RayMemory {
   std::uint32_t capacity = 0;     // slots of a list
-  std::uint32_t ray_words = 0;    // of a slot
   std::uint32_t tile_pixels = 0;  // most pixels of a tile
   RayList shadow;
   std::array<RayList, 2> reflection, refraction;  // generations take turns; reflection[1] also holds the primary rays

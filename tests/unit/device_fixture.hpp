@@ -43,10 +43,11 @@ class DeviceEnvironment final : public ::testing::Environment {
 inline const auto* const device_environment = ::testing::AddGlobalTestEnvironment(new DeviceEnvironment);
 inline const Device& device() { return DeviceEnvironment::device(); }
 
-/// Host and kernels share it.
+/// Host and kernels share it, bound or by its address.
 template <typename T>
 Buffer buffer_of(const std::vector<T>& values) {
-  Buffer buffer(device(), "test input", values.size() * sizeof(T), Buffer::Kind::upload);
+  Buffer buffer(device(), "test input", values.size() * sizeof(T), Buffer::Kind::upload,
+                vk::BufferUsageFlagBits::eShaderDeviceAddress);
   if (!values.empty()) std::memcpy(buffer.mapped(), values.data(), values.size() * sizeof(T));
   return buffer;
 }
@@ -142,12 +143,12 @@ struct TestRay {
   std::uint32_t pixel = 0, medium = 0;
 };
 
-/// Word by word, as shaders/rays.glsl lays out a list of `capacity` slots; slots past the rays hold none.
+/// As shaders/rays.glsl lays out a list of `capacity` slots; slots past the rays hold none.
 inline std::vector<float> pack_rays(const std::vector<TestRay>& rays, std::uint32_t capacity) {
-  std::vector<float> words(std::size_t{gpu::RAY_WORDS} * capacity, 0.0F);
+  std::vector<float> words(std::size_t{gpu::RAY_WORDS + 1} * capacity, 0.0F);
   auto put = [&](std::uint32_t word, std::size_t slot, auto value) {
     static_assert(sizeof(value) == 4);
-    std::memcpy(&words[std::size_t{word} * capacity + slot], &value, 4);
+    std::memcpy(&words[slot * gpu::RAY_WORDS + word], &value, 4);
   };
   for (std::size_t i = 0; i < capacity; ++i) {
     const TestRay ray = i < rays.size() ? rays[i] : TestRay{};
@@ -155,8 +156,9 @@ inline std::vector<float> pack_rays(const std::vector<TestRay>& rays, std::uint3
     for (int c = 0; c < 3; ++c) put(gpu::RAY_DIRECTION + static_cast<std::uint32_t>(c), i, ray.direction[c]);
     put(gpu::RAY_TMIN, i, ray.tmin);
     put(gpu::RAY_TMAX, i, ray.tmax);
-    put(gpu::RAY_PIXEL, i, i < rays.size() ? ray.pixel : gpu::NO_INDEX);
     put(gpu::RAY_MEDIUM, i, ray.medium);
+    const std::uint32_t pixel = i < rays.size() ? ray.pixel : gpu::NO_INDEX;
+    std::memcpy(&words[std::size_t{gpu::RAY_WORDS} * capacity + i], &pixel, 4);
   }
   return words;
 }

@@ -50,7 +50,7 @@ class Batch {
   }
   void bind(Recorder& recorder) const {
     recorder.bind(ROLE_FRAME, frame_);
-    recorder.bind(ROLE_RAYS, rays_);
+    recorder.bind_rays(LIST_RAYS, rays_);
     recorder.bind(ROLE_ORDER, order_);
   }
 

@@ -129,7 +129,7 @@ class ListOnDevice {
     order_ = buffer_of(order);
     counters_ = buffer_of(counters);
     recorder_.bind(ROLE_FRAME, frame_);
-    recorder_.bind(ROLE_RAYS, rays_);
+    recorder_.bind_rays(LIST_RAYS, rays_);
     recorder_.bind(ROLE_ORDER, order_);
     recorder_.bind(ROLE_COUNTERS, counters_);
   }

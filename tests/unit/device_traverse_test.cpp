@@ -118,7 +118,7 @@ Tested test_pairs(const Kernel& kernel, const Bindings& b, const Push& push) {
     if (buffer) recorder.bind(role, buffer);
   };
   bind(ROLE_RAY_NODES, b.ray_nodes);
-  bind(ROLE_RAYS, b.rays);
+  if (b.rays) recorder.bind_rays(LIST_RAYS, b.rays);
   bind(ROLE_ORDER, b.order);
   bind(ROLE_FRAME, b.frame);
   bind(ROLE_SKELETON, b.seeds);
