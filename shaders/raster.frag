@@ -11,12 +11,14 @@
 layout(constant_id = 2) const bool MASKED = true;
 BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
 layout(location = 0) flat in uint triangle;
+layout(location = 1) flat in vec3 corner_a;
+layout(location = 2) flat in vec3 corner_b;
+layout(location = 3) flat in vec3 corner_c;
 
 void main() {
-  uvec2 at = uvec2(gl_FragCoord.xy);
+  uvec2 at = to_uint(gl_FragCoord.xy - 0.5);  // of pixel centres
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, frame.place);
-  Corners corners = load_triangle(triangle);
-  TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
+  TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), corner_a, corner_b, corner_c, 0.0);
   if (!(h.t >= ray.tmin && h.t <= ray.tmax)) return;
   uint64_t found = (uint64_t(floatBitsToUint(h.t)) << 32) | uint64_t(triangle);
   uint pixel = at.y * frame.tile_width + at.x;

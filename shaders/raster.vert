@@ -6,11 +6,18 @@
 #include "rays.glsl"
 #include "memory.glsl"
 layout(location = 0) flat out uint triangle;
+layout(location = 1) flat out vec3 corner_a;
+layout(location = 2) flat out vec3 corner_b;
+layout(location = 3) flat out vec3 corner_c;
 
 void main() {
   triangle = gl_VertexIndex / 3u;
   uint corner = gl_VertexIndex % 3u;
-  vec3 p = load_corner(triangle, corner);
+  Corners c = load_triangle(triangle);
+  corner_a = c.a;
+  corner_b = c.b;
+  corner_c = c.c;
+  vec3 p = corner == 0u ? c.a : corner == 1u ? c.b : c.c;
   vec3 v = p - frame.eye;
   float x = dot(v, frame.right) / dot(frame.right, frame.right);
   float y = dot(v, frame.up) / dot(frame.up, frame.up);
