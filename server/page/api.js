@@ -8,7 +8,7 @@ const $ = (id) => document.getElementById(id);
 function element(name, properties = {}, ...children) {
   const { dataset, ...rest } = properties;
   const node = Object.assign(document.createElement(name), rest);
-  for (const key of ["aria-current", "aria-label"]) if (key in rest) node.setAttribute(key, rest[key]);
+  for (const key of ["aria-current", "aria-label", "role"]) if (key in rest) node.setAttribute(key, rest[key]);
   Object.assign(node.dataset, dataset);
   node.append(...children);
   return node;

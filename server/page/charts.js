@@ -89,11 +89,12 @@ function testChart(jobs) {
       brief(stats.totals.tests_per_ray_by_kind?.[kind]), saved === undefined || saved === null ? "–" : `${(100 * saved).toFixed(2)} %`];
   }));
   $("tests").replaceChildren(legend(sorts.map(([, words], i) => [words, COLOURS[i]])), bars(rows, brief, "Intersection tests a ray by kind of ray"),
-    table(["rays", "how many", "sorted", "tests a ray", "saved of brute force"], body));
+    table("Tests a ray", ["rays", "how many", "sorted", "tests a ray", "saved of brute force"], body));
 }
 
-function table(head, body) {
-  return element("div", { className: "wide", tabIndex: 0 }, element("table", {},
+/** A table in a box that scrolls by itself, by keyboard too. */
+function table(words, head, body) {
+  return element("div", { className: "wide", tabIndex: 0, role: "region", "aria-label": words }, element("table", {},
     element("thead", {}, element("tr", {}, ...head.map((text) => element("th", { scope: "col", textContent: text })))),
     element("tbody", {}, ...body.map((row) => element("tr", {}, ...row.map((text) => element("td", { textContent: text })))))));
 }
@@ -113,7 +114,7 @@ function levelTable(jobs) {
     .map((kind) => [jobs.length > 1 ? `${kind}, ${label}` : kind, ...levels[kind].map(brief)]));
   const most = Math.max(0, ...rows.map((row) => row.length - 1));
   const full = rows.map((row) => [...row, ...Array(most - row.length + 1).fill("")]);
-  $("levels").replaceChildren(rows.length ? table(["rays", ...Array.from({ length: most }, (_, i) => (i ? `level ${i}` : "roots"))], full)
+  $("levels").replaceChildren(rows.length ? table("Tests by level", ["rays", ...Array.from({ length: most }, (_, i) => (i ? `level ${i}` : "roots"))], full)
     : element("p", { className: "facts", textContent: "No rays’ hierarchy was used." }));
 }
 

@@ -32,7 +32,7 @@ function drawReport() {
   const front = all.filter((point) => point.pareto?.time).sort((a, b) => a.time - b.time);
   $("report-plot").replaceChildren(
     legend([["measured", COLOURS[9]], ["best for its time", COLOURS[1]], ["draft, production, exact", COLOURS[0]]]), scatter(all, front),
-    table(["settings", "time", "error (RMSE)"], front.map((point) => [[point.name, point.label].filter(Boolean).join(": "), milliseconds(point.time), point.rmse.toPrecision(3)])));
+    table("Best for their time", ["settings", "time", "error (RMSE)"], front.map((point) => [[point.name, point.label].filter(Boolean).join(": "), milliseconds(point.time), point.rmse.toPrecision(3)])));
 }
 
 /** Ticks at powers of ten around the values. */

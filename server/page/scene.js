@@ -76,13 +76,19 @@ function bytes(count) {
   return `${(count / 1024 ** power).toFixed(power ? 1 : 0)} ${units[power]}`;
 }
 
+/** What the engine does where nothing is said: not sent, so that a job tells what somebody chose. */
+const DEFAULTS = { strategy: "auto", sort: "auto", primary: "auto", filter: "gaussian", compression: "zip" };
+
 function settings() {
   const form = new FormData($("new"));
   const wanted = { frames: form.get("frames").replace(/\s/g, ""), size: form.get("size"), quality: form.get("quality") };
   if (form.get("fps")) wanted.fps = Number(form.get("fps"));
   for (const name of ["animation", "camera-node"]) if (form.get(name)) wanted[name] = /^\d+$/.test(form.get(name)) ? Number(form.get(name)) : form.get(name);
-  for (const name of ["strategy", "sort"]) if (form.get(name) !== "auto") wanted[name] = form.get(name);
-  if (form.get("primary") === "trace") wanted.primary = "trace";
+  for (const [name, given] of Object.entries(DEFAULTS)) if (form.get(name) !== given) wanted[name] = form.get(name);
+  for (const name of ["depth", "cutoff"]) if (form.get(name)) wanted[name] = Number(form.get(name));
+  const [samples, error] = [form.get("spp"), form.get("error")];
+  if (error) wanted.spp = ["adaptive", error, samples].filter(Boolean).join(":");
+  else if (samples) wanted.spp = Number(samples);
   if (form.getAll("aov").length) wanted.aov = form.getAll("aov").join(",");
   return wanted;
 }

@@ -189,24 +189,6 @@ def test_a_token_is_asked_for_and_serves_everything(visit: Visit, guarded: tuple
     assert download.value.suggested_filename == "cornell.glb.zip"
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_on_a_phone_nothing_sticks_out(visit: Visit, done: sheaf.Job, scheme: str) -> None:
-    phone = {"viewport": {"width": 360, "height": 740}, "is_mobile": True, "has_touch": True}
-    page = visit(f"#job={done.id}", color_scheme=scheme, **phone)
-    expect(page.locator("#stats")).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    small = page.evaluate(
-        """() => [...document.querySelectorAll("button, select, summary")].filter((each) => each.offsetParent)
-          .map((each) => each.getBoundingClientRect()).filter((box) => box.height < 24 || box.width < 24).length"""
-    )
-    assert small == 0
-    dark = page.evaluate("getComputedStyle(document.body).backgroundColor")
-    assert (sum(map(int, re.findall(r"\d+", dark)[:3])) < 300) == (scheme == "dark")
-    page.tap("#open")
-    expect(page.locator("#pixel")).to_contain_text("64 × 36")
-    assert page.evaluate("document.querySelector('#viewer').scrollWidth <= innerWidth")
-
-
 def test_everything_has_a_name_and_is_reached_by_keyboard(visit: Visit, done: sheaf.Job) -> None:
     page = visit(f"#job={done.id}")
     expect(page.locator("#stats")).to_be_visible()
