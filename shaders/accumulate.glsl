@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Sums a pixel's light in 32.32 fixed point: integer addition has no order, so neither has the picture.
+#include "convert.glsl"
 BUFFER(ROLE_ACCUMULATION, coherent, uint64_t, accumulation);  // four a pixel of the tile: R G B alpha
 
 uint64_t to_fixed(float v) {
   if (!(v > 0.0)) return 0ul;  // negative, zero, NaN
   v = min(v, 1.0e9);
-  float whole = floor(v);
-  return (uint64_t(uint(whole)) << 32) | uint64_t(uint((v - whole) * 4294967296.0));
+  // Sixteen bits at a time, each exact; see to_uint.
+  float whole = floor(v), high = floor(whole * (1.0 / 65536.0)), rest = (v - whole) * 65536.0, low = floor(rest);
+  return pack64(uvec2((to_uint(low) << 16) | to_uint(floor((rest - low) * 65536.0)),
+                      (to_uint(high) << 16) | to_uint(whole - high * 65536.0)));
 }
 
 void accumulate(uint pixel, uint channel, float v) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Texture lookups from plain buffers: one filter, the same bits on every device and in every kernel.
 #extension GL_EXT_control_flow_attributes : require
+#include "convert.glsl"
 layout(constant_id = 9) const bool TEXTURED = true;
 
 // Bytes of sRGB (IEC 61966-2-1). Above the linear part ((b/255 + 0.055)/1.055)^2.4 = s^5 · s^-0.2, s its square root; the last factor
@@ -13,10 +14,6 @@ vec3 srgb_to_linear(vec3 b) {
   return mix(y * y * s * p, b * (1.0 / (255.0 * 12.92)), lessThanEqual(b, vec3(10.0)));
 }
 
-// Of whole numbers in [0, 2^23): next to 2^23 they are the lowest bits. A conversion, which must also see to what does not fit, goes
-// lane by lane on a CPU device.
-uint to_uint(float v) { return floatBitsToUint(v + 8388608.0) & 0x7FFFFFu; }
-uvec2 to_uint(vec2 v) { return uvec2(to_uint(v.x), to_uint(v.y)); }
 vec4 bytes_of(uint word) { return vec4(ivec4(word & 255u, (word >> 8) & 255u, (word >> 16) & 255u, word >> 24)); }
 
 // Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU device. All is exact but the quotient, and

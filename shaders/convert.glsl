@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// Whole numbers in [0, 2^23) to integers: next to 2^23 they are the lowest bits. A conversion, which must also see to what does not
+// fit, goes lane by lane on a CPU device.
+#ifndef SHEAF_CONVERT_GLSL
+#define SHEAF_CONVERT_GLSL
+uint to_uint(float v) { return floatBitsToUint(v + 8388608.0) & 0x7FFFFFu; }
+uvec2 to_uint(vec2 v) { return uvec2(to_uint(v.x), to_uint(v.y)); }
+#endif
