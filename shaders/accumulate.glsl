@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Sums a pixel's light in 32.32 fixed point: integer addition has no order, so neither has the picture.
 #include "convert.glsl"
-BUFFER(ROLE_ACCUMULATION, coherent, uint64_t, accumulation);  // four a pixel of the tile: R G B alpha
+layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer PixelSums { uint64_t channel[4]; };  // R G B alpha
+PixelSums sums_of(uint pixel) { return PixelSums(pack64(frame.sums_at) + uint64_t(32u * pixel)); }
 
 uint64_t to_fixed(float v) {
   if (!(v > 0.0)) return 0ul;  // negative, zero, NaN
@@ -14,7 +15,7 @@ uint64_t to_fixed(float v) {
 
 void accumulate(uint pixel, uint channel, float v) {
   uint64_t fixed_value = to_fixed(v);
-  if (fixed_value != 0ul) atomicAdd(accumulation[4u * pixel + channel], fixed_value);
+  if (fixed_value != 0ul) atomicAdd(sums_of(pixel).channel[channel], fixed_value);
 }
 
 void accumulate_rgb(uint pixel, vec3 v) {

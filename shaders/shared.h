@@ -27,7 +27,6 @@ using mat3 = glm::mat3;
 #define ROLE_LIGHTS 17
 #define ROLE_HITS 20
 #define ROLE_ORDER 21
-#define ROLE_ACCUMULATION 25
 #define ROLE_BLOCK_SUMS 26
 #define ROLE_KEYS 27
 #define ROLE_CHUNKS 28
@@ -43,7 +42,6 @@ using mat3 = glm::mat3;
 #define ROLE_VISIBILITY 38
 #define ROLE_LAYERS 39
 #define ROLE_PIXEL_TESTS 40
-#define ROLE_OUTPUT 41
 #define ROLE_WORK 42
 #define ROLE_DYNAMIC 43
 #define ROLE_DEFORM 44
@@ -349,6 +347,7 @@ struct Frame {      // per frame and batch of samples
   uvec2 texels_at;
   uvec2 instances_at;
   uvec2 materials_at;
+  uvec2 sums_at;
 };
 
 struct Deform {     // one deforming instance's vertices

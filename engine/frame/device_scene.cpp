@@ -119,21 +119,18 @@ void DeviceScene::bind(Recorder& r) const {
 }
 
 void DeviceScene::set_addresses(gpu::Frame& frame) const {
-  auto words = [](vk::DeviceAddress at) {
-    return glm::uvec2(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U));
-  };
-  frame.triangles_at = words(triangles_.address());
-  frame.indices_at = words(indices_.address());
-  frame.positions_at = words(positions_.address());
-  frame.normals_at = words(normals_.address());
-  frame.tangents_at = words(tangents_.address());
-  frame.uvs_at = words(uvs_.address());
-  frame.colors_at = words(colors_.address());
-  frame.dynamic_at = words(dynamic_.address());
-  frame.texels_at = words(texels_.address());
-  frame.instances_at = words(instances_.address());
-  frame.materials_at = words(materials_.address());
-  if (nodes_) frame.nodes_at = words(nodes_.address());
+  frame.triangles_at = triangles_.address_words();
+  frame.indices_at = indices_.address_words();
+  frame.positions_at = positions_.address_words();
+  frame.normals_at = normals_.address_words();
+  frame.tangents_at = tangents_.address_words();
+  frame.uvs_at = uvs_.address_words();
+  frame.colors_at = colors_.address_words();
+  frame.dynamic_at = dynamic_.address_words();
+  frame.texels_at = texels_.address_words();
+  frame.instances_at = instances_.address_words();
+  frame.materials_at = materials_.address_words();
+  if (nodes_) frame.nodes_at = nodes_.address_words();
 }
 
 void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {

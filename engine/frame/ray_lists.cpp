@@ -12,6 +12,7 @@ constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;        // accumulation, v
 constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;  // keys, kept order, chunks twice, skeleton, digit counts
 constexpr std::uint64_t packet_bytes = 4 + 8;                 // key, and at worst a packet of its own
 constexpr std::uint32_t least_capacity = 1024;
+constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;  // or never bound: no binding's limit holds
 
 std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   std::uint64_t lists = 1;  // primary
@@ -27,19 +28,18 @@ std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   return bytes;
 }
 
-// The rays themselves are known by address; everything else must fit one binding.
+// Rays, sums and pixels are known by address; everything else must fit one binding.
 std::uint64_t most_slots(std::uint64_t range, const RenderSettings& settings, std::uint64_t per_pixel) {
   constexpr std::uint64_t bound_bytes =
       12;  // a slot's chunk, optical depth or share of the ray hierarchy (and its top)
   constexpr std::uint64_t top_bytes = (gpu::MAX_LEVELS + 1) * gpu::RAY_NODE_WORDS * 4;
-  const std::uint64_t accumulated = 32, layered = settings.layers.any_surface() ? gpu::LAYER_WORDS * 4 : 0;
-  return std::min((range - top_bytes) / bound_bytes, range / std::max(accumulated, layered) * per_pixel);
+  const std::uint64_t pixel_bytes = settings.layers.any_surface() ? gpu::LAYER_WORDS * 4 : 8;  // or of the visibility
+  return std::min((range - top_bytes) / bound_bytes, range / pixel_bytes * per_pixel);
 }
 
 RayList make_list(const Device& device, const char* name, const RayMemory& m, bool optical_depth) {
   RayList list;
-  list.rays = Buffer(device, name, std::uint64_t{m.capacity} * gpu::RAY_SLOT_BYTES, Buffer::Kind::device,
-                     vk::BufferUsageFlagBits::eShaderDeviceAddress);
+  list.rays = Buffer(device, name, std::uint64_t{m.capacity} * gpu::RAY_SLOT_BYTES, Buffer::Kind::device, by_address);
   list.hits = Buffer(device, name, std::uint64_t{m.capacity} * 8);
   list.order = Buffer(device, name, std::uint64_t{m.capacity} * 4);
   if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{m.capacity} * 12);
@@ -84,12 +84,12 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   m.counters_readback = Buffer(device, "counters", gpu::COUNT_WORDS * 4, Kind::readback);
   m.args = Buffer(device, "dispatch arguments", gpu::ARGS_COUNT * 12);
   m.block_sums = Buffer(device, "block sums", (std::uint64_t{m.capacity} / gpu::SCAN_BLOCK + 2) * 4 * gpu::RADIX);
-  m.accumulation = Buffer(device, "accumulation", pixels * 32);
+  m.accumulation = Buffer(device, "accumulation", pixels * 32, Kind::device, by_address);
   if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8);
-  m.output = Buffer(device, "output", pixels * 16);
-  m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback);
+  m.output = Buffer(device, "output", pixels * 16, Kind::device, by_address);
+  m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback, by_address);
   if (plan.adaptive) {
-    m.accumulation_readback = Buffer(device, "accumulation", pixels * 32, Kind::readback);
+    m.accumulation_readback = Buffer(device, "accumulation", pixels * 32, Kind::readback, by_address);
     m.active_pixels = Buffer(device, "active pixels", pixels * 4, Kind::upload);
     m.sample_places = Buffer(device, "sample places", (std::uint64_t{settings.samples.most} + 1) * 8, Kind::upload);
   }

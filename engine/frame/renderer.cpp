@@ -43,7 +43,6 @@ void Renderer::bind_all() {
   recorder_.bind(ROLE_COUNTERS, memory_.counters);
   recorder_.bind(ROLE_ARGS, memory_.args);
   recorder_.bind(ROLE_BLOCK_SUMS, memory_.block_sums);
-  recorder_.bind(ROLE_ACCUMULATION, memory_.accumulation);
   recorder_.bind(ROLE_STATS, memory_.stats);
   if (memory_.pixel_tests) recorder_.bind(ROLE_PIXEL_TESTS, memory_.pixel_tests);
 }
@@ -81,6 +80,7 @@ void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Til
   f.tile_width = tile.width;
   f.tile_height = tile.height;
   scene_.set_addresses(f);
+  f.sums_at = memory_.accumulation.address_words();
   recorder_.update(memory_.frame, &f, sizeof(f));
 }
 

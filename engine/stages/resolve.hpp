@@ -12,9 +12,11 @@ class Resolve {
   explicit Resolve(const Device& device) : resolve_(device, "resolve") {}
   void record(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels, std::uint32_t samples) const {
     recorder.stage("resolve");
-    recorder.bind(ROLE_OUTPUT, memory.output);
-    const float inverse = 1.0F / static_cast<float>(samples);
-    recorder.dispatch(resolve_, inverse, (std::uint64_t{pixels} * 4 + gpu::GROUP - 1) / gpu::GROUP);
+    const struct {
+      std::uint64_t output;
+      float inverse_samples;
+    } push{memory.output.address(), 1.0F / static_cast<float>(samples)};
+    recorder.dispatch(resolve_, push, (std::uint64_t{pixels} + gpu::GROUP - 1) / gpu::GROUP);
     recorder.copy(memory.output, memory.readback, std::uint64_t{pixels} * 16);
   }
 

@@ -46,6 +46,11 @@ Buffer::~Buffer() {
 
 vk::DeviceAddress Buffer::address() const { return device_->logical().getBufferAddress({*buffer_}); }
 
+glm::uvec2 Buffer::address_words() const {
+  const vk::DeviceAddress at = address();
+  return {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U)};
+}
+
 void Buffer::swap(Buffer& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(buffer_, other.buffer_);

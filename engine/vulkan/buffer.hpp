@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ class Buffer {
     return {static_cast<T*>(mapped_), static_cast<std::size_t>(bytes_ / sizeof(T))};
   }
   [[nodiscard]] vk::DeviceAddress address() const;
+  /// The address, low word first, as structures shared with shaders hold it.
+  [[nodiscard]] glm::uvec2 address_words() const;
 
  private:
   void swap(Buffer& other) noexcept;
