@@ -19,7 +19,7 @@ void queue_pending(uint v, Pending pending) {
 
 // What is asked depends on the barycentrics: the same test once more, which gives the same bits.
 void settle_one(uint v, uint triangle, float t) {
-  Ray ray = load_ray(push.rays, order[first_ray + v * LANES + lane]);
+  Ray ray = load_ray(push.rays, load_slot(push.order, first_ray + v * LANES + lane));
   TriangleHit h = intersect_corners(make_shear(ray.origin, ray.direction), load_triangle(triangle), ray.tmin, ray.tmax);
   if (ANY_HIT) {
     ivec3 passed = ivec3(0);

@@ -35,7 +35,7 @@ Beam load_bundle() {
   float own_far = -INFINITY;
   [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
     uint k = v * LANES + lane;
-    uint slot = order[first_ray + min(k, ray_count - 1u)];  // the last one fills the rest; its extra lanes find nothing
+    uint slot = load_slot(push.order, first_ray + min(k, ray_count - 1u));  // the last one fills the rest; its extra lanes find nothing
     Ray ray = load_ray(push.rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
     float limit = k < ray_count ? ray.tmax : -INFINITY;
@@ -176,7 +176,7 @@ void store(uint v) {
   else
     PICK(t, r_t, v)
   if (v * LANES + lane >= ray_count) return;
-  hits[slot] = triangle == NO_INDEX ? NO_HIT : pack_hit(t, triangle);
+  hit_at(push.hits, slot).v = triangle == NO_INDEX ? NO_HIT : pack_hit(t, triangle);
   if (ANY_HIT && TRANSLUCENT) {
     ivec3 sum;
     PICK(sum, r_stops, v);

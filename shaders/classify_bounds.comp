@@ -12,12 +12,11 @@
 #include "classify.glsl"
 layout(constant_id = 10) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lanes.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_CLASS_BOUNDS, coherent, uint, class_bounds);  // ordered integers: five least, five greatest a face
 layout(push_constant) uniform Push {
   uint kind;
   uint reset;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 const uint NO_FACE = 6u;
@@ -52,7 +51,7 @@ void main() {
   }
   uint count = counters[COUNT_RAYS + push.kind], first = global_group() * GROUP, last = min(first + GROUP, count);
   [[dont_unroll]] for (uint base = first; base < last; base += LANES) {
-    Ray r = load_ray(push.rays, order[min(base + lane, last - 1u)]);
+    Ray r = load_ray(push.rays, load_slot(push.order, min(base + lane, last - 1u)));
     bound_faces(base + lane < last, class_of(r.origin, r.direction));
   }
 }

@@ -13,13 +13,12 @@
 #include "hierarchy_box.glsl"
 layout(constant_id = 10) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lanes.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_CELLS, readonly, uvec2, cells_above);
 BUFFER(ROLE_CELLS_NEXT, readonly, uvec2, cells);
 layout(push_constant) uniform Push {
   uvec2 frustums;
   uvec2 above;     // of the cells above; none have them in the first round
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 vec4 min_lanes(vec4 v) { return vec4(min_lanes(v.xyz), min_lanes(v.w)); }
@@ -42,10 +41,10 @@ void main() {
   }
   vec3 lo, hi;
   hierarchy_box(lo, hi);
-  Ray leader = load_ray(push.rays, order[first]);
+  Ray leader = load_ray(push.rays, load_slot(push.order, first));
   Hull hull = begin_hull(leader.direction, lo, hi);
   for (uint k = first + lane; k < last; k += LANES) {
-    Ray r = load_ray(push.rays, order[k]);
+    Ray r = load_ray(push.rays, load_slot(push.order, k));
     add_extent(hull, r.origin, r.direction, r.tmin, r.tmax);
   }
   hull.first = min_lanes(hull.first);
@@ -53,7 +52,7 @@ void main() {
   hull.largest = max_lanes(hull.largest);
   set_planes(hull);
   for (uint k = first + lane; k < last; k += LANES) {
-    Ray r = load_ray(push.rays, order[k]);
+    Ray r = load_ray(push.rays, load_slot(push.order, k));
     add_places(hull, r.origin, r.direction);
   }
   bvec4 upper = bvec4(false, true, false, true);

@@ -15,14 +15,13 @@
 #include "classify.glsl"
 #include "node.glsl"
 #include "hierarchy_box.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_RAY_CELLS, coherent, uint, slot_keys);  // no ray has a cell yet
 BUFFER(ROLE_CLASS_BOUNDS, readonly, uint, class_bounds);
 layout(push_constant) uniform Push {
   uint kind;
   uint sorted;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 uint key_of(Ray r) {
@@ -59,7 +58,7 @@ uint key_of(Ray r) {
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
+  uint slot = load_slot(push.order, i);
   if (push.sorted == 0u) slot_keys[slot] = key_of(load_ray(push.rays, slot));
   keys[i] = slot_keys[slot];
 }

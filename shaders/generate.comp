@@ -14,8 +14,6 @@
 #include "accumulate.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_HITS, readonly, uvec2, hits);
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 
 layout(constant_id = 1) const bool SHADOWS = true;
@@ -26,7 +24,7 @@ layout(constant_id = 5) const bool VOLUMES = true;
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
   uint last;        // 1: no further generation
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
   uvec2 shadow_rays;
   uvec2 reflection_rays;
   uvec2 refraction_rays;
@@ -272,8 +270,8 @@ void main() {
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint parents = counters[COUNT_PARENTS];
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
-  uint from = push.kind == KIND_PRIMARY ? i : order[i];
-  uvec2 hit = hits[from];
+  uint from = push.kind == KIND_PRIMARY ? i : load_slot(push.order, i);
+  uvec2 hit = unpack32(hit_at(push.hits, from).v);
   Parent p = load_parent(from);
   count_tests(push.kind, STAT_HITS, hit.x != NO_INDEX ? 1u : 0u);
   if (hit.x != NO_INDEX) {

@@ -9,15 +9,14 @@
 #include "camera.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_HITS, writeonly, uvec2, hits);
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
-BUFFER(ROLE_VISIBILITY, readonly, uvec2, visibility);
+BUFFER(ROLE_VISIBILITY, readonly, uint64_t, visibility);
 BUFFER(ROLE_ACTIVE_PIXELS, readonly, uint, active_pixels);
 BUFFER(ROLE_SAMPLE_PLACES, readonly, vec2, sample_places);
 layout(constant_id = 1) const bool RASTER = true;
 layout(constant_id = 2) const bool ADAPTIVE = false;
 layout(constant_id = 9) const bool TEXTURED = true;
-layout(push_constant) uniform Push { layout(offset = PUSH_RAYS) uvec2 rays; } push;
+layout(push_constant) uniform Push { PUSH_LIST } push;
 
 // Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
 // them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
@@ -55,5 +54,5 @@ void main() {
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, place);
   store_ray(push.rays, i, ray, pixel, RayLoad(vec3(1), 1.0, 0u));
   if (TEXTURED) store_ray_cone(push.rays, i, vec2(frame.cone_width, frame.cone_spread));
-  hits[i] = RASTER ? visibility[pixel] : uvec2(NO_INDEX);
+  hit_at(push.hits, i).v = RASTER ? visibility[pixel] : pack64(uvec2(NO_INDEX));
 }

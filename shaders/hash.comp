@@ -9,14 +9,13 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 layout(push_constant) uniform Push {
   uint kind;
   uint bits;        // a coordinate
   uint light_bits;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 vec3 batch_place(vec3 o) {  // in [0, 1]³; a batch without extent along an axis has one cell there
@@ -56,7 +55,7 @@ uint secondary_key(Ray ray) {
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
+  uint slot = load_slot(push.order, i);
   Ray ray = load_ray(push.rays, slot);
   keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, load_ray_medium(push.rays, slot)) : secondary_key(ray);
 }

@@ -8,10 +8,9 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "curves.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 layout(push_constant) uniform Push {
   uint kind; uint reset;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 void main() {
@@ -23,7 +22,7 @@ void main() {
   uint block = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint i = block; i < min(block + SCAN_RUN, count); ++i) {
-    vec3 o = load_ray(push.rays, order[i]).origin;
+    vec3 o = load_ray(push.rays, load_slot(push.order, i)).origin;
     lo = min(lo, o);
     hi = max(hi, o);
   }

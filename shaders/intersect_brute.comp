@@ -11,25 +11,24 @@
 #include "results.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 layout(constant_id = 1) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
   uint first;
   uint last;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
+  uint slot = load_slot(push.order, i);
   Ray ray = load_ray(push.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   if (push.first > 0u) {  // go on from the slices before
-    uint64_t found = hits[slot];
+    uint64_t found = hit_at(push.hits, slot).v;
     shade.blocked = found != NO_HIT;
     if (found != NO_HIT) {
       best = Nearest(uintBitsToFloat(uint(found >> 32)), uint(found));
@@ -52,9 +51,9 @@ void main() {
     }
   }
   if (ANY_HIT)
-    store_shade(slot, shade);
+    store_shade(push.hits, slot, shade);
   else
-    store_nearest(slot, best);
+    store_nearest(push.hits, slot, best);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
   count_pixel(load_ray_pixel(push.rays, slot), tests);
 }

@@ -17,7 +17,6 @@
 #include "counting.glsl"
 #include "visit.glsl"
 #include "beam.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_PACKETS, readonly, uvec2, packets);
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
@@ -26,7 +25,7 @@ layout(push_constant) uniform Push {
   uint kind;
   uint room;   // pairs of a half
   uint level;  // past the object hierarchy's
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 #include "bundle_rays.glsl"
 

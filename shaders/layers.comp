@@ -7,14 +7,13 @@
 #include "rays.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
-BUFFER(ROLE_HITS, readonly, uvec2, hits);
 BUFFER(ROLE_LAYERS, writeonly, float, layers);
-layout(push_constant) uniform Push { layout(offset = PUSH_RAYS) uvec2 rays; } push;
+layout(push_constant) uniform Push { PUSH_LIST } push;
 
 void main() {
   uint i = global_index(), pixels = frame.tile_width * frame.tile_height;
   if (i >= pixels) return;
-  uint triangle = hits[i].x, pixel = load_ray_pixel(push.rays, i);
+  uint triangle = unpack32(hit_at(push.hits, i).v).x, pixel = load_ray_pixel(push.rays, i);
   float words[LAYER_WORDS];
   for (uint w = 0u; w < LAYER_WORDS; ++w) words[w] = 0.0;
   words[LAYER_DEPTH] = INFINITY;

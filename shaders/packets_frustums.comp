@@ -9,12 +9,11 @@
 #include "node.glsl"
 #include "triangle.glsl"
 #include "frustum_memory.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_PACKETS, readonly, uvec2, packets);  // first ray, cell; one more at the end
 BUFFER(ROLE_PAIRS, writeonly, uvec2, pairs);
 layout(push_constant) uniform Push {
   uvec2 frustums;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 #include "hierarchy_box.glsl"
 
@@ -24,15 +23,15 @@ void main() {
   uint packet = counters[COUNT_WALK_FIRST] + i, first = packets[packet].x, last = packets[packet + 1u].x;
   vec3 lo, hi;
   hierarchy_box(lo, hi);
-  Ray leader = load_ray(push.rays, order[first]);
+  Ray leader = load_ray(push.rays, load_slot(push.order, first));
   Hull hull = begin_hull(leader.direction, lo, hi);
   for (uint k = first; k < last; ++k) {
-    Ray r = load_ray(push.rays, order[k]);
+    Ray r = load_ray(push.rays, load_slot(push.order, k));
     add_extent(hull, r.origin, r.direction, r.tmin, r.tmax);
   }
   set_planes(hull);
   for (uint k = first; k < last; ++k) {
-    Ray r = load_ray(push.rays, order[k]);
+    Ray r = load_ray(push.rays, load_slot(push.order, k));
     add_places(hull, r.origin, r.direction);
   }
   store_frustum(push.frustums, i, end_hull(hull, octant_of(leader.direction)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reading and writing the rays of a list, which is known by its address: structures of RAY_WORDS, two words a load, so that what
-// a kernel needs of a ray comes from one cache line and no descriptor's bounds are checked (memory.glsl); behind the last of
-// `frame.capacity` structures the slots' pixels, one word each, since compaction asks for nothing else.
+// A list: rays in slots, their hits, and an order (slot numbers), each known by its address, for no descriptor's bounds to be
+// checked (memory.glsl). Rays are structures of RAY_WORDS, two words a load, so that what a kernel needs of one lies in a cache line;
+// behind the last of `frame.capacity` structures lie the slots' pixels, one word each: compaction asks for nothing else.
 #ifndef SHEAF_RAYS_GLSL
 #define SHEAF_RAYS_GLSL
 #extension GL_EXT_buffer_reference : require
@@ -9,6 +9,19 @@
 layout(scalar, set = 0, binding = ROLE_FRAME) readonly buffer Block_frame { Frame frame; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { uint64_t pair[RAY_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayPixel { uint v; };
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListSlot { uint v; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer ListHit { uint64_t v; };  // low word: triangle; high: t
+
+// In push constants: what Recorder::bind_list was given last.
+#define PUSH_LIST                          \
+  layout(offset = PUSH_LISTS) uvec2 order; \
+  uvec2 hits;                              \
+  uvec2 rays;
+
+uint load_slot(uvec2 order, uint i) { return ListSlot(pack64(order) + uint64_t(4u * i)).v; }
+void store_slot(uvec2 order, uint i, uint slot) { ListSlot(pack64(order) + uint64_t(4u * i)).v = slot; }
+ListHit hit_at(uvec2 hits, uint slot) { return ListHit(pack64(hits) + uint64_t(8u * slot)); }
 
 struct Ray {
   vec3 origin;

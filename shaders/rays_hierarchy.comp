@@ -8,19 +8,18 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "ray_node.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, coherent, float, ray_nodes);
 layout(push_constant) uniform Push {
   uint kind;
   uint level;         // being made, 1 and up
   uint first;         // word of this level's first node
   uint first_below;   // word of the level below; unused for level 1
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 RayNode child_node(uint i) {
   if (push.level == 1u) {
-    Ray r = load_ray(push.rays, order[i]);
+    Ray r = load_ray(push.rays, load_slot(push.order, i));
     return RayNode(r.origin, 0.0, r.direction, 0.0, r.tmax);
   }
   return LOAD_RAY_NODE(ray_nodes, push.first_below + i * RAY_NODE_WORDS);

@@ -8,13 +8,12 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "ray_node.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, writeonly, float, ray_nodes);
 BUFFER(ROLE_BUNDLE_FLAGS, writeonly, uint, bundle_flags);
 layout(push_constant) uniform Push {
   uint kind;
   float widest;     // half-angle past which a bundle is loose
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 void main() {
@@ -25,7 +24,7 @@ void main() {
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY), sum = vec3(0), dlo = vec3(2), dhi = vec3(-2);
   float tmax = 0.0;
   for (uint i = first; i < last; ++i) {
-    Ray r = load_ray(push.rays, order[i]);
+    Ray r = load_ray(push.rays, load_slot(push.order, i));
     lo = min(lo, r.origin);
     hi = max(hi, r.origin);
     dlo = min(dlo, r.direction);

@@ -8,17 +8,15 @@
 #include "accumulate.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_HITS, readonly, uvec2, hits);
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
 layout(constant_id = 3) const bool TRANSLUCENT = true;
-layout(push_constant) uniform Push { layout(offset = PUSH_SHADOW_RAYS) uvec2 rays; } push;
+layout(push_constant) uniform Push { PUSH_LIST } push;
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + KIND_SHADOW]) return;
-  uint slot = order[i];
-  bool blocked = hits[slot].x != NO_INDEX;
+  uint slot = load_slot(push.order, i);
+  bool blocked = unpack32(hit_at(push.hits, slot).v).x != NO_INDEX;
   count_tests(KIND_SHADOW, STAT_HITS, blocked ? 1u : 0u);
   if (blocked) return;
   vec3 light = load_ray_load(push.rays, slot).weight;

@@ -25,8 +25,6 @@ using mat3 = glm::mat3;
 #define ROLE_INSTANCES 7
 #define ROLE_MATERIALS 14
 #define ROLE_LIGHTS 17
-#define ROLE_HITS 20
-#define ROLE_ORDER 21
 #define ROLE_BLOCK_SUMS 26
 #define ROLE_KEYS 27
 #define ROLE_CHUNKS 28
@@ -68,14 +66,16 @@ using mat3 = glm::mat3;
 #define ROLE_CELL_CUTS 65
 #define ROLE_COUNT 66
 
-// Lists of rays are known by address. Bound like the rest, their addresses lie in the push constants from this byte on.
-#define LIST_RAYS 0
-#define LIST_SHADOW_RAYS 1
-#define LIST_REFLECTION_RAYS 2
-#define LIST_REFRACTION_RAYS 3
-#define LIST_COUNT 4
-#define PUSH_RAYS 96
-#define PUSH_SHADOW_RAYS 104
+// Parts of lists are known by address. Bound like the rest, they lie in the push constants from this byte on, in this order: those
+// of the list at work, and the rays that generate writes.
+#define LIST_ORDER 0
+#define LIST_HITS 1
+#define LIST_RAYS 2
+#define LIST_SHADOW_RAYS 3
+#define LIST_REFLECTION_RAYS 4
+#define LIST_REFRACTION_RAYS 5
+#define LIST_COUNT 6
+#define PUSH_LISTS 80
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
 

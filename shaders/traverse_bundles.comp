@@ -18,13 +18,12 @@
 #include "ray_node.glsl"
 #include "visit.glsl"
 #include "beam.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_WORK, coherent, uint, work);
 layout(push_constant) uniform Push {
   uint kind;
   uint most_effort;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 #include "bundle_rays.glsl"

@@ -10,7 +10,6 @@
 #include "lists.glsl"
 #include "counting.glsl"
 #include "ray_node.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_PAIRS, writeonly, uvec2, candidates);
 BUFFER(ROLE_SURVIVORS, writeonly, uint, survivors);
@@ -25,7 +24,7 @@ layout(push_constant) uniform Push {
   uint candidates;   // in this batch
   uint offset;       // first parent, or first candidate among the seeds
   uint seeds;        // not 0: so many seeds
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 uvec2 seeded(uint i) {  // the seed whose run holds candidate i
@@ -42,7 +41,7 @@ uvec2 seeded(uint i) {  // the seed whose run holds candidate i
 
 RayNode node_at(uint i) {
   if (push.level == 0u) {
-    Ray r = load_ray(push.rays, order[i]);
+    Ray r = load_ray(push.rays, load_slot(push.order, i));
     return RayNode(r.origin, 0.0, r.direction, 0.0, r.tmax);
   }
   return LOAD_RAY_NODE(ray_nodes, push.first_word + i * RAY_NODE_WORDS);
@@ -68,5 +67,5 @@ void main() {
   survivors[i] = survives ? 1u : 0u;
   count_tests(push.kind, STAT_NODE_OBJECT, exists ? 1u : 0u);
   count_tests(push.kind, STAT_LEVELS + min(push.level, MAX_LEVELS - 1u), exists ? 1u : 0u);
-  if (PIXEL_COUNTED && exists && push.level == 0u) count_pixel(load_ray_pixel(push.rays, order[pair.x]), 1u);
+  if (PIXEL_COUNTED && exists && push.level == 0u) count_pixel(load_ray_pixel(push.rays, load_slot(push.order, pair.x)), 1u);
 }

@@ -12,18 +12,17 @@
 #include "results.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 layout(set = 0, binding = ROLE_STRUCTURE) uniform accelerationStructureEXT structure;
 layout(constant_id = 1) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
+  uint slot = load_slot(push.order, i);
   Ray ray = load_ray(push.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
@@ -53,9 +52,9 @@ void main() {
     }
   }
   if (ANY_HIT)
-    store_shade(slot, shade);
+    store_shade(push.hits, slot, shade);
   else
-    store_nearest(slot, best);
+    store_nearest(push.hits, slot, best);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
   count_pixel(load_ray_pixel(push.rays, slot), tests);
 }

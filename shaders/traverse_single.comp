@@ -11,14 +11,13 @@
 #include "lists.glsl"
 #include "counting.glsl"
 #include "single_ray.glsl"
-BUFFER(ROLE_ORDER, readonly, uint, order);
 BUFFER(ROLE_WORK, readonly, uint, work);
 layout(constant_id = 8) const bool LOOSE = false;
 
 layout(push_constant) uniform Push {
   uint kind;
   uint first, count;  // of the list's rays; 0: all
-  layout(offset = PUSH_RAYS) uvec2 rays;
+  PUSH_LIST
 } push;
 
 void main() {
@@ -32,16 +31,16 @@ void main() {
     i += push.first;
   }
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = order[i];
+  uint slot = load_slot(push.order, i);
   Ray ray = load_ray(push.rays, slot);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   Tests tests = Tests(0u, 0u);
   trace_single(ray, best, shade, tests);
   if (ANY_HIT)
-    store_shade(slot, shade);
+    store_shade(push.hits, slot, shade);
   else
-    store_nearest(slot, best);
+    store_nearest(push.hits, slot, best);
   count_tests(push.kind, STAT_RAY_BOX, tests.boxes);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests.triangles);
   count_pixel(load_ray_pixel(push.rays, slot), tests.boxes + tests.triangles);

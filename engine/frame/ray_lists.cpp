@@ -28,7 +28,7 @@ std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   return bytes;
 }
 
-// Rays, sums and pixels are known by address; everything else must fit one binding.
+// Lists, sums and pixels are known by address; everything else must fit one binding.
 std::uint64_t most_slots(std::uint64_t range, const RenderSettings& settings, std::uint64_t per_pixel) {
   constexpr std::uint64_t bound_bytes =
       12;  // a slot's chunk, optical depth or share of the ray hierarchy (and its top)
@@ -40,8 +40,8 @@ std::uint64_t most_slots(std::uint64_t range, const RenderSettings& settings, st
 RayList make_list(const Device& device, const char* name, const RayMemory& m, bool optical_depth) {
   RayList list;
   list.rays = Buffer(device, name, std::uint64_t{m.capacity} * gpu::RAY_SLOT_BYTES, Buffer::Kind::device, by_address);
-  list.hits = Buffer(device, name, std::uint64_t{m.capacity} * 8);
-  list.order = Buffer(device, name, std::uint64_t{m.capacity} * 4);
+  list.hits = Buffer(device, name, std::uint64_t{m.capacity} * 8, Buffer::Kind::device, by_address);
+  list.order = Buffer(device, name, std::uint64_t{m.capacity} * 4, Buffer::Kind::device, by_address);
   if (optical_depth) list.optical_depth = Buffer(device, name, std::uint64_t{m.capacity} * 12);
   return list;
 }

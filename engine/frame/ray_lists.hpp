@@ -15,9 +15,9 @@ namespace sheaf {
 struct RayList {
   Buffer rays, hits, order, optical_depth;
   void bind(Recorder& recorder) const {
-    recorder.bind_rays(LIST_RAYS, rays);
-    recorder.bind(ROLE_HITS, hits);
-    recorder.bind(ROLE_ORDER, order);
+    recorder.bind_list(LIST_RAYS, rays);
+    recorder.bind_list(LIST_HITS, hits);
+    recorder.bind_list(LIST_ORDER, order);
     if (optical_depth) recorder.bind(ROLE_OPTICAL_DEPTH, optical_depth);
   }
 };

@@ -36,9 +36,9 @@ void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint3
   const std::uint32_t primary = is_primary ? 1 : 0;
   recorder.dispatch(begin_, primary, 1);
   const std::uint32_t to = 1 - from;
-  recorder.bind_rays(LIST_SHADOW_RAYS, memory.shadow.rays);
-  if (plan_.reflections) recorder.bind_rays(LIST_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
-  if (plan_.refractions) recorder.bind_rays(LIST_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
+  recorder.bind_list(LIST_SHADOW_RAYS, memory.shadow.rays);
+  if (plan_.reflections) recorder.bind_list(LIST_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
+  if (plan_.refractions) recorder.bind_list(LIST_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
   struct {
     std::uint32_t kind, last;
   } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, last ? 1U : 0U};

@@ -13,7 +13,6 @@ Shade::Shade(const Device& device, const Features& features, bool counted) {
 void Shade::record(Recorder& recorder, const RayMemory& memory) const {
   recorder.stage("shade");
   memory.shadow.bind(recorder);
-  recorder.bind_rays(LIST_SHADOW_RAYS, memory.shadow.rays);
   const std::uint32_t unused = 0;
   recorder.dispatch_indirect(shade_, unused, gpu::ARGS_RAYS);
 }

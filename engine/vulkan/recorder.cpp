@@ -66,9 +66,9 @@ void Recorder::bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint po
   }
   commands_.pushDescriptorSetKHR(point, layout.handle(), 0, writes);
   std::array<std::uint32_t, push_bytes / 4> words{};
-  static_assert(PUSH_RAYS + sizeof(rays_) <= push_bytes);
+  static_assert(PUSH_LISTS + sizeof(lists_) <= push_bytes);
   std::memcpy(words.data(), push, bytes);
-  std::memcpy(&words[PUSH_RAYS / 4], rays_.data(), sizeof(rays_));
+  std::memcpy(&words[PUSH_LISTS / 4], lists_.data(), sizeof(lists_));
   commands_.pushConstants<std::uint32_t>(layout.handle(), stages, 0, words);
 }
 

@@ -21,8 +21,8 @@ class Recorder {
 
   void bind(std::uint32_t role, const Buffer& buffer) { bound_[role] = buffer.handle(); }
   void bind(std::uint32_t role, vk::Buffer buffer) { bound_[role] = buffer; }
-  /// A list of rays (one of LIST_…), which kernels know by its address.
-  void bind_rays(std::uint32_t list, const Buffer& rays) { rays_[list] = rays.address(); }
+  /// A part of a list (one of LIST_…), which kernels know by its address.
+  void bind_list(std::uint32_t list, const Buffer& part) { lists_[list] = part.address(); }
 
   void bind_structure(vk::AccelerationStructureKHR structure) { structure_ = structure; }
 
@@ -32,13 +32,13 @@ class Recorder {
   /// `groups` workgroups; more than the device's limit in x are folded into y.
   template <typename Push>
   void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups) {
-    static_assert(sizeof(Push) <= PUSH_RAYS);
+    static_assert(sizeof(Push) <= PUSH_LISTS);
     dispatch_bytes(kernel, &push, sizeof(Push), groups);
   }
   /// Workgroups from record `args` (one of ARGS_…) of the buffer bound to ROLE_ARGS.
   template <typename Push>
   void dispatch_indirect(const Kernel& kernel, const Push& push, std::uint32_t args) {
-    static_assert(sizeof(Push) <= PUSH_RAYS);
+    static_assert(sizeof(Push) <= PUSH_LISTS);
     indirect_bytes(kernel, &push, sizeof(Push), args);
   }
 
@@ -77,7 +77,7 @@ class Recorder {
   vk::raii::QueryPool queries_{nullptr};
   Buffer unbound_;  // stands in for roles that a kernel declares but its variant never reads
   std::array<vk::Buffer, ROLE_COUNT> bound_{};
-  std::array<vk::DeviceAddress, LIST_COUNT> rays_{};
+  std::array<vk::DeviceAddress, LIST_COUNT> lists_{};
   vk::AccelerationStructureKHR structure_;
   std::vector<const char*> marks_;
   const char* current_ = nullptr;

@@ -163,8 +163,8 @@ std::vector<std::uint32_t> entered_by(const Batch& batch) {
   Recorder recorder(device());
   recorder.bind(ROLE_FRAME, frame_buffer);
   recorder.bind(ROLE_COUNTERS, counter_buffer);
-  recorder.bind_rays(LIST_RAYS, ray_buffer);
-  recorder.bind(ROLE_ORDER, order_buffer);
+  recorder.bind_list(LIST_RAYS, ray_buffer);
+  recorder.bind_list(LIST_ORDER, order_buffer);
   recorder.bind(ROLE_PACKETS, packet_buffer);
   recorder.bind(ROLE_PAIRS, first_pairs.buffer());
   recorder.bind(ROLE_LISTS, lists.buffer());

@@ -50,8 +50,8 @@ class Batch {
   }
   void bind(Recorder& recorder) const {
     recorder.bind(ROLE_FRAME, frame_);
-    recorder.bind_rays(LIST_RAYS, rays_);
-    recorder.bind(ROLE_ORDER, order_);
+    recorder.bind_list(LIST_RAYS, rays_);
+    recorder.bind_list(LIST_ORDER, order_);
   }
 
  private:

@@ -129,8 +129,8 @@ class ListOnDevice {
     order_ = buffer_of(order);
     counters_ = buffer_of(counters);
     recorder_.bind(ROLE_FRAME, frame_);
-    recorder_.bind_rays(LIST_RAYS, rays_);
-    recorder_.bind(ROLE_ORDER, order_);
+    recorder_.bind_list(LIST_RAYS, rays_);
+    recorder_.bind_list(LIST_ORDER, order_);
     recorder_.bind(ROLE_COUNTERS, counters_);
   }
   Recorder& recorder() { return recorder_; }

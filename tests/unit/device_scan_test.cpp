@@ -151,7 +151,7 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
   RayList list;
   list.rays = buffer_of(pack_rays(rays, capacity));
   list.hits = buffer_of(Words(1));
-  list.order = Buffer(device(), "order", std::uint64_t{slots} * 4, Buffer::Kind::upload);
+  list.order = buffer_of(Words(slots));
   Words counters(gpu::COUNT_WORDS), arguments(std::size_t{gpu::ARGS_COUNT} * 3);
   counters[gpu::COUNT_SLOTS + kind] = slots;
   set_args(arguments, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS, blocks_of(slots));

@@ -118,8 +118,8 @@ Tested test_pairs(const Kernel& kernel, const Bindings& b, const Push& push) {
     if (buffer) recorder.bind(role, buffer);
   };
   bind(ROLE_RAY_NODES, b.ray_nodes);
-  if (b.rays) recorder.bind_rays(LIST_RAYS, b.rays);
-  bind(ROLE_ORDER, b.order);
+  if (b.rays) recorder.bind_list(LIST_RAYS, b.rays);
+  if (b.order) recorder.bind_list(LIST_ORDER, b.order);
   bind(ROLE_FRAME, b.frame);
   bind(ROLE_SKELETON, b.seeds);
   bind(ROLE_PAIRS_NEXT, b.parents);
