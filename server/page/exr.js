@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads the EXR files that sheaf writes: one part, scanlines, uncompressed, RLE or ZIP; half, float and uint channels.
+// Reads the EXR files that sheaf writes: one part, scanlines; half, float and uint channels.
 
-const SCANLINES = { 0: 1, 1: 1, 2: 1, 3: 16 };  // of a block, by compression: none, rle, zips, zip
+const SCANLINES = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 8: 32, 9: 256 };  // of a block, by compression
 const COMPRESSIONS = ["none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"];
 
 /** Gives { width, height, channels: { name: Float32Array }, attributes: { name: text } }, rows from the top. */
@@ -22,7 +22,7 @@ async function readExr(buffer) {
     const packed = new Uint8Array(buffer, offset + 8, view.getUint32(offset + 4, true));
     const count = Math.min(rows, height - top);
     const size = count * width * header.channels.reduce((sum, { type }) => sum + (type === 1 ? 2 : 4), 0);
-    spread(await unpack(packed, size, header.compression), header, channels, top, count);
+    spread(await unpack(packed, size, header, count), header, channels, top, count);
   }));
   return { width, height, channels, attributes: header.attributes };
 }
@@ -42,7 +42,7 @@ function readHeader(view) {
     const begin = at;
     if (type === "chlist") {
       while (view.getUint8(at)) {
-        header.channels.push({ name: text(), type: view.getUint32(at, true) });
+        header.channels.push({ name: text(), type: view.getUint32(at, true), linear: view.getUint8(at + 4) !== 0 });
         at += 16;
       }
     } else if (name === "compression") header.compression = view.getUint8(at);
@@ -57,15 +57,21 @@ function readHeader(view) {
   return header;
 }
 
-async function unpack(packed, size, compression) {
-  if (compression === 0 || packed.length === size) return packed;  // what would grow is stored as it is
-  const raw = compression === 1 ? runs(packed, size) : await inflate(packed);
-  if (raw.length !== size) throw new Error("The EXR file is damaged.");
-  // Bytes are differences of their neighbours, all first halves of the pairs before all second ones.
-  for (let i = 1; i < size; i += 1) raw[i] = raw[i - 1] + raw[i] - 128;
-  const whole = new Uint8Array(size);
-  const half = (size + 1) >> 1;
-  for (let i = 0; i < size; i += 1) whole[i] = raw[(i >> 1) + (i & 1 ? half : 0)];
+async function unpack(packed, size, header, rows) {
+  if (header.compression === 0 || packed.length === size) return packed;  // what would grow is stored as it is
+  const whole = header.compression === 4 ? unpackPiz(packed, header, rows)
+    : header.compression >= 8 ? await unpackDwa(packed, header, rows)
+    : unweave(header.compression === 1 ? runs(packed, size) : await inflate(packed));
+  if (whole.length !== size) throw damaged();
+  return whole;
+}
+
+/** From differences of neighbours, all first halves of the pairs before all second ones. */
+function unweave(raw) {
+  for (let i = 1; i < raw.length; i += 1) raw[i] = raw[i - 1] + raw[i] - 128;
+  const whole = new Uint8Array(raw.length);
+  const half = (raw.length + 1) >> 1;
+  for (let i = 0; i < raw.length; i += 1) whole[i] = raw[(i >> 1) + (i & 1 ? half : 0)];
   return whole;
 }
 
