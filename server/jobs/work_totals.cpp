@@ -42,9 +42,9 @@ void add_frame(const json& frame, WorkTotals::Sums& sums) {
   for (const auto& [kind, number] : rays.items())
     if (has_room(sums.rays, kind)) sums.rays[kind] += count(number);
   for (const auto& [test, kinds] : tests.items()) {
-    if (!kinds.is_object()) continue;  // brute_force is a number: what was not done
-    for (const auto& [kind, number] : kinds.items())
-      if (has_room(sums.tests, {test, kind})) sums.tests[{test, kind}] += count(number);
+    if (!kinds.is_object()) continue;                 // brute_force is a number: what was not done
+    for (const auto& [kind, number] : kinds.items())  // by level they are lists
+      if (number.is_number() && has_room(sums.tests, {test, kind})) sums.tests[{test, kind}] += count(number);
   }
   if (peak.is_number()) sums.peak_device_mib = std::max(sums.peak_device_mib, peak.get<double>());
 }

@@ -2,6 +2,7 @@
 #include "routes/metrics.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace sheaf::server {
@@ -9,6 +10,8 @@ namespace {
 
 class Text {
  public:
+  // Sums grow for months: with the usual six digits they would seem to stand still.
+  Text() { out_.precision(std::numeric_limits<double>::digits10); }
   void family(const std::string& name, const std::string& type, const std::string& help) {
     name_ = "sheaf_" + name;
     out_ << "# HELP " << name_ << ' ' << help << "\n# TYPE " << name_ << ' ' << type << '\n';

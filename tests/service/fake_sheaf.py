@@ -8,8 +8,8 @@ for before it}), `exit` ({code, message} in place of an end), `signal` (to die b
 of noise on standard error), `warnings`, `silent_frames` (said to be done, but not there), `no_start`, `padding` (bytes
 in each frame), `pace` (seconds each frame takes), `mute` (frames that are made and not reported), `until` (a file:
 `exit`, `signal` and `mute` are for as long as it is there), `holds` (what `inspect` says of the scene), `inspect_exit`
-(its exit code), `inspect_gate` (FIFO that it waits for). Every frame begun is noted in a file `ledger` in the job's
-folder.
+(its exit code), `inspect_gate` (FIFO that it waits for), `wall_ms` (of a frame, in the stats). Every frame begun is
+noted in a file `ledger` in the job's folder.
 """
 
 import argparse
@@ -21,6 +21,8 @@ import struct
 import sys
 import time
 import zlib
+
+DEVICE = {"name": "a fake one", "driver": "none"}
 
 
 def parse() -> argparse.Namespace:
@@ -178,11 +180,15 @@ def render(options: argparse.Namespace) -> None:
             {
                 "frame": frame,
                 "time_s": frame / 24,
-                "wall_ms": 1.5,
+                "wall_ms": fake.get("wall_ms", 1.5),
                 "stages": {"raster": 0.5, "shade": 1},
                 "counted": True,
                 "rays": {"primary": 4},
-                "tests": {"brute_force": 8, "ray_triangle": {"primary": 2}},
+                "tests": {
+                    "brute_force": 8,
+                    "node_object_by_level": {"primary": [1, 1]},
+                    "ray_triangle": {"primary": 2},
+                },
             }
         )
         if frame in fake.get("mute", []):
@@ -197,7 +203,7 @@ def render(options: argparse.Namespace) -> None:
             file=str(out / (stem + ".exr")),
         )
     misbehave(fake, None)
-    put(pathlib.Path(options.stats), json.dumps({"schema": 1, "frames": stats}).encode())
+    put(pathlib.Path(options.stats), json.dumps({"schema": 1, "device": DEVICE, "frames": stats}).encode())
     say(event="done", frames=len(wanted))
 
 
