@@ -29,7 +29,8 @@ struct Given {
   std::uint64_t textures_mib = Limits{}.texture_bytes >> 20;
   std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256, kept_mib = 0;
   std::uint64_t worker_mib = 16'384, file_mib = 8192, wall_s = 7 * 86'400;
-  double grace_s = 5, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30, head_timeout_s = 10;
+  double grace_s = 5, cancel_grace_s = 0.7, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30,
+         head_timeout_s = 10;
 };
 
 void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
@@ -95,6 +96,7 @@ void apply(const Given& given, ProgramOptions& options) {
   options.service.kept_bytes = given.kept_mib << 20;
   options.service.runner.log_bytes = limits.log_bytes;
   options.service.runner.grace = milliseconds(given.grace_s);
+  options.service.runner.cancel_grace = milliseconds(given.cancel_grace_s);
   options.service.runner.retention = std::chrono::seconds(
       given.retention_h > 0 ? std::max<std::int64_t>(1, std::llround(given.retention_h * 3600)) : 0);
   split_address(given.listen, options.host, options.port);
@@ -153,6 +155,10 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_option("--grace", given.grace_s, "seconds from SIGTERM to SIGKILL for a worker that is to stop")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--cancel-grace", given.cancel_grace_s,
+                 "the same where its job is cancelled, which ends within a second; never longer than --grace")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--heartbeat", given.heartbeat_s, "seconds between comments on an idle event stream")

@@ -30,7 +30,7 @@ void JobQueue::stop_worker(const std::string& id, bool force) {
   if (force)
     found->second->force();
   else
-    found->second->ask();
+    found->second->cancel();
 }
 
 bool JobQueue::is_running(const std::string& id) const {

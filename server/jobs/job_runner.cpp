@@ -67,7 +67,8 @@ Ending JobRunner::run_worker_of(const Job& job, const StopSwitch& stop) const {
   const WorkerOutput output{[&](std::string_view line) { reporter.line(line); },
                             [&](std::string_view bytes) { log.append(bytes); }};
   const Confinement confinement(options_.confinement, options_.sheaf, files_.folder(job.id));
-  ending.worker = run_worker(command_of(job), output, stop, {options_.grace, options_.wall, &confinement});
+  ending.worker =
+      run_worker(command_of(job), output, stop, {options_.grace, options_.wall, &confinement, options_.cancel_grace});
   ending.wall = options_.wall;
   ending.cpu_seconds = options_.confinement.cpu_seconds;
   log.end();

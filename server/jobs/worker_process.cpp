@@ -87,16 +87,18 @@ class Worker {
 
   void obey() {
     const bool overdue = bounds_.wall.count() > 0 && Clock::now() >= overdue_;
-    if ((stop_.asked() || overdue) && !kill_at_) {
+    if ((stop_.asked() || overdue) && !stopping_) {
       timed_out_ = !stop_.asked();
       if (!stop_.forced()) ::kill(-pid_, SIGTERM);
-      kill_at_ = Clock::now() + bounds_.grace;
+      stopping_ = Clock::now();
     }
-    if (kill_at_ && (stop_.forced() || Clock::now() >= *kill_at_)) ::kill(-pid_, SIGKILL);
+    if (!stopping_) return;
+    const auto grace = stop_.cancelled() ? std::min(bounds_.cancel_grace, bounds_.grace) : bounds_.grace;
+    if (stop_.forced() || Clock::now() >= *stopping_ + grace) ::kill(-pid_, SIGKILL);
   }
 
   void wait_for_output(Clock::time_point until) {
-    const bool watch_stop = !reaped_ && !stop_.forced() && !(kill_at_ && stop_.asked());
+    const bool watch_stop = !reaped_ && !stop_.forced() && !(stopping_ && stop_.asked());
     std::array<pollfd, 3> entries{pollfd{out_.get(), POLLIN, 0}, pollfd{err_.get(), POLLIN, 0},
                                   pollfd{watch_stop ? stop_.fd() : -1, POLLIN, 0}};
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
@@ -140,7 +142,7 @@ class Worker {
   int waits_for_exit_ = 0;
   Fd out_, err_;
   std::string line_;
-  std::optional<Clock::time_point> kill_at_;
+  std::optional<Clock::time_point> stopping_;  // since when
 };
 
 }  // namespace
@@ -157,7 +159,8 @@ void StopSwitch::raise_to(int level) {
 }
 
 void StopSwitch::ask() { raise_to(1); }
-void StopSwitch::force() { raise_to(2); }
+void StopSwitch::cancel() { raise_to(2); }
+void StopSwitch::force() { raise_to(3); }
 
 WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
                         const WorkerBounds& bounds) {

@@ -20,10 +20,12 @@ namespace sheaf::server {
 class StopSwitch {
  public:
   StopSwitch();
-  void ask();    // SIGTERM, and SIGKILL after the grace period
-  void force();  // SIGKILL
+  void ask();     // SIGTERM, and SIGKILL after the grace period
+  void cancel();  // the same after a shorter one: nobody wants what the worker would finish
+  void force();   // SIGKILL
   [[nodiscard]] bool asked() const { return level_ > 0; }
-  [[nodiscard]] bool forced() const { return level_ > 1; }
+  [[nodiscard]] bool cancelled() const { return level_ > 1; }
+  [[nodiscard]] bool forced() const { return level_ > 2; }
   [[nodiscard]] int fd() const { return event_.get(); }  // readable once the switch was used
 
  private:
@@ -45,9 +47,10 @@ struct WorkerOutput {
 class Confinement;
 
 struct WorkerBounds {
-  std::chrono::milliseconds grace{5000};     // from SIGTERM to SIGKILL
-  std::chrono::seconds wall{0};              // how long it may run; 0: any time
-  const Confinement* confinement = nullptr;  // none
+  std::chrono::milliseconds grace{5000};        // from SIGTERM to SIGKILL
+  std::chrono::seconds wall{0};                 // how long it may run; 0: any time
+  const Confinement* confinement = nullptr;     // none
+  std::chrono::milliseconds cancel_grace{700};  // from SIGTERM to SIGKILL once it is cancelled, if less than `grace`
 };
 
 /// Throws Error{io} if the program cannot be started.

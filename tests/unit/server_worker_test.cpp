@@ -103,6 +103,9 @@ TEST(WorkerProcess, IsKilledAfterTheGraceOrWhenForced) {
   const Finished late = run_script(
       stubborn, stop, [&](std::string_view) { stop.ask(); }, std::chrono::milliseconds(20));
   EXPECT_EQ(late.ending.signal, SIGKILL);
+  StopSwitch cancel;
+  const Finished cancelled = run_script(stubborn, cancel, [&](std::string_view) { cancel.cancel(); });
+  EXPECT_EQ(cancelled.ending.signal, SIGKILL);
   StopSwitch force;
   const Finished forced = run_script(stubborn, force, [&](std::string_view) {
     force.ask();
