@@ -2,12 +2,17 @@
 // Hits of a lane's rays that a material may take back wait here: asking materials takes long, and what one lane needs all lanes
 // run, so it is done for many at once.
 const uint LEAF_FILLS = LEAF_TRIANGLES * VECTORS;  // the most that one leaf adds to a lane's queue
-const uint QUEUE = 2u * LEAF_FILLS;
+const uint QUEUE = 2u * LEAF_FILLS + LEAF_TRIANGLES * HELD_LEAVES;
 uint q_vector[QUEUE], q_triangle[QUEUE];
 float q_t[QUEUE];
 uint queued = 0u;  // of this lane
 
-bool queue_has_room() { return !asks_materials() || !any_lane(queued > QUEUE - LEAF_FILLS); }
+// For what one more leaf may add: hits, and itself a vector, which are hits to be.
+bool waiting_has_room() {
+  bool full = held > HELD_LEAVES - VECTORS;
+  if (asks_materials()) full = full || queued + LEAF_TRIANGLES * held > QUEUE - LEAF_FILLS;
+  return !any_lane(full);
+}
 
 void queue_pending(uint v, Pending pending) {
   if (pending.triangle == NO_INDEX) return;

@@ -18,6 +18,9 @@ uint vectors;                                         // that hold rays
 uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
 uint effort = 0u;                                     // nodes and vectors looked at; the same in all lanes
 
+const uint HELD_LEAVES = 2u * VECTORS;
+uint held = 0u;                                       // leaves that wait, of this lane (bundle_leaves.glsl)
+
 #include "bundle_queue.glsl"
 
 Extent extent_of(Extent mine) {
@@ -91,8 +94,7 @@ struct Work {
   Shade shade;
 };
 
-void test_triangle(uint triangle, bool enters, inout Work w) {
-  Corners corners = load_corners(triangle);
+void test_corners(Corners corners, uint triangle, bool enters, inout Work w) {
   Pending pending = NOTHING_PENDING;
   if (enters && w.best.t > -INFINITY) {
     ++triangle_tests;
@@ -125,7 +127,7 @@ Work load_work(uint v) {
   return w;
 }
 
-void store_work(Work w) {
+void put_found(Work w) {
   PUT(r_t, w.v, w.best.t);
   if (!ANY_HIT) {
     PUT(r_triangle, w.v, w.best.triangle);
@@ -133,18 +135,30 @@ void store_work(Work w) {
     PUT(r_triangle, w.v, w.shade.triangle);
     PUT(r_end, w.v, w.shade.t);
   }
-  float far = max_lanes(w.best.t);
-  if (lane == w.v % LANES) vector_beam.farthest = far;
 }
+
+void bound_vector(uint v, float nearest_so_far) {
+  float far = max_lanes(nearest_so_far);
+  if (lane == v % LANES) vector_beam.farthest = far;
+}
+
+#include "bundle_leaves.glsl"
 
 void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
   Work w = load_work(v);
   vec2 range = slab(w.shear, lo, hi);
   bool enters = range.x <= range.y && range.y >= w.tmin && range.x <= w.best.t;
   if (v * LANES + lane < ray_count) ++box_tests;
-  uint first = leaf_first(leaf), last = any_lane(enters) ? first + leaf_count(leaf) : first;
-  for (uint triangle = first; triangle < last; ++triangle) test_triangle(triangle, enters, w);
-  store_work(w);
+  uint entering = lanes_that(enters);
+  if (entering == 0u) return;
+  if (worth_waiting(entering)) {
+    if (enters) hold_leaf(v, leaf);
+    return;
+  }
+  for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
+    test_corners(load_corners(triangle), triangle, enters, w);
+  put_found(w);
+  bound_vector(v, w.best.t);
 }
 
 void test_leaf(uint leaf, uint place) {
@@ -153,7 +167,7 @@ void test_leaf(uint leaf, uint place) {
   child_box(boxes, place % WIDE, lo, hi);
   uint todo = VECTORS > LANES ? (1u << vectors) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));
   while (todo != 0u) {
-    test_vector(uint(findLSB(todo)), leaf, lo, hi);
+    test_vector(lowest_bit(todo), leaf, lo, hi);
     ++effort;
     todo &= todo - 1u;
   }

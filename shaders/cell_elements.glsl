@@ -32,6 +32,7 @@ void scan_total(uint total) {
 // order; so in the end every cell's leaves stand roughly front to back. What has no room is not written: the walk stops there,
 // says so, and the host repeats it with fewer cells.
 #include "memory.glsl"
+#include "convert.glsl"
 BUFFER(ROLE_PAIRS, coherent, uvec2, pairs);
 BUFFER(ROLE_SURVIVORS, readonly, uint, entered);
 layout(push_constant) uniform Push {
@@ -49,7 +50,7 @@ void scan_store(uint i, uint before, uint own) {
     return;
   }
   for (uint mask = word & 255u; mask != 0u; mask &= mask - 1u, ++at) {
-    uint slot = uint(findLSB(mask)) ^ (word >> PAIR_OCTANT);
+    uint slot = lowest_bit(mask) ^ (word >> PAIR_OCTANT);
     uvec2 children = unpack32(node_pairs(pair.y).pair[(NODE_CHILD + slot) / 2u]);
     uint child = (slot & 1u) != 0u ? children.y : children.x;
     pairs[at] = uvec2(pair.x, (child & CHILD_LEAF) == 0u ? child : CHILD_LEAF | (pair.y * WIDE + slot));

@@ -54,14 +54,14 @@ void test_list(Beam beam, uvec2 list) {
     if (there) ++node_tests;
     uint todo = lanes_where(there && beam_enters(beam, lo, hi));
     while (todo != 0u) {
-      uint k = uint(findLSB(todo));
+      uint k = lowest_bit(todo);
       todo &= todo - 1u;
-      if (!queue_has_room()) settle_queue();
+      if (!waiting_has_room()) settle_waiting();
       test_leaf(subgroupShuffle(leaf, k), subgroupShuffle(place, k));
     }
     beam.farthest = farthest_hit();
   }
-  if (asks_materials()) settle_queue();
+  settle_waiting();
 }
 
 void main() {

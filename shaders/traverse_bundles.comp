@@ -49,20 +49,22 @@ uint entered_children(Beam beam, Cone cone, uint node) {
 void walk(Beam beam, Cone cone) {
   uint current = 0u, place = 0u;
   while (current != CHILD_EMPTY) {
-    while (current != CHILD_EMPTY && queue_has_room()) {
+    while (current != CHILD_EMPTY && waiting_has_room()) {
       while (is_node(current)) {
         if (++effort > push.most_effort) return;
         visit_children(visit, current, entered_children(beam, cone, current) & 255u);
         current = next_child(visit, place);
       }
-      while (!is_node(current) && current != CHILD_EMPTY && queue_has_room()) {
+      while (!is_node(current) && current != CHILD_EMPTY && waiting_has_room()) {
         test_leaf(current, place);
         beam.farthest = farthest_hit();
         current = next_child(visit, place);
         if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;  // every shadow ray is blocked
       }
     }
-    if (asks_materials()) settle_queue();
+    settle_waiting();
+    beam.farthest = farthest_hit();
+    if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What walks of the object hierarchy share, one ray a lane or a bundle a subgroup: depth first, a stack entry a level.
 #include "node.glsl"
+#include "convert.glsl"
 layout(constant_id = 1) const bool ANY_HIT = false;
 
 // Whether a hit may have to ask its material before it counts.
@@ -32,7 +33,7 @@ uint next_child(inout Visit v, out uint place) {
     --v.depth;
     v.group = stack[v.depth];
   }
-  uint slot = uint(findLSB(v.group & 255u)) ^ v.octant, node = v.group >> 8;
+  uint slot = lowest_bit(v.group & 255u) ^ v.octant, node = v.group >> 8;
   v.group &= v.group - 1u;
   place = node * WIDE + slot;
   uvec2 pair = unpack32(node_pairs(node).pair[(NODE_CHILD + slot) / 2u]);
