@@ -29,7 +29,7 @@ struct Given {
   std::uint64_t textures_mib = Limits{}.texture_bytes >> 20;
   std::uint64_t log_kib = Limits{}.log_bytes >> 10, free_mib = 256, kept_mib = 0;
   std::uint64_t worker_mib = 16'384, file_mib = 8192, wall_s = 7 * 86'400;
-  double grace_s = 5, cancel_grace_s = 0.7, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30,
+  double grace_s = 5, cancel_grace_s = 0.5, retention_h = 168, heartbeat_s = 15, read_timeout_s = 30,
          head_timeout_s = 10;
 };
 

@@ -20,7 +20,7 @@ namespace sheaf::server {
 struct RunnerOptions {
   std::string sheaf;                            // the worker's program
   std::chrono::milliseconds grace{5000};        // from SIGTERM to SIGKILL
-  std::chrono::milliseconds cancel_grace{700};  // the same for a cancelled job, which is to end within a second
+  std::chrono::milliseconds cancel_grace{500};  // the same for a cancelled job, which is to end within a second
   std::chrono::seconds retention{7 * 86'400};   // a finished job's stay; 0: for ever
   std::uint64_t log_bytes = Limits{}.log_bytes;
   std::chrono::seconds wall{7 * 86'400};  // a worker's time; 0: any

@@ -50,7 +50,7 @@ struct WorkerBounds {
   std::chrono::milliseconds grace{5000};        // from SIGTERM to SIGKILL
   std::chrono::seconds wall{0};                 // how long it may run; 0: any time
   const Confinement* confinement = nullptr;     // none
-  std::chrono::milliseconds cancel_grace{700};  // from SIGTERM to SIGKILL once it is cancelled, if less than `grace`
+  std::chrono::milliseconds cancel_grace{500};  // from SIGTERM to SIGKILL once it is cancelled, if less than `grace`
 };
 
 /// Throws Error{io} if the program cannot be started.

@@ -98,7 +98,7 @@ def test_a_flood_is_cut(start: Callable[..., Service]) -> None:
 
 
 # The default is asked of nobody but the clock: a cancelled job ends within a second, and what a busy machine adds.
-@pytest.mark.parametrize(("options", "least", "most"), [((), 0.6, 5.0), (("--cancel-grace", "1.5"), 1.4, 60.0)])
+@pytest.mark.parametrize(("options", "least", "most"), [((), 0.4, 5.0), (("--cancel-grace", "1.5"), 1.4, 60.0)])
 def test_a_cancelled_job_does_not_wait_for_its_frame(
     start: Callable[..., Service], gate: Gate, options: tuple[str, ...], least: float, most: float
 ) -> None:
