@@ -52,14 +52,13 @@ Beam load_bundle() {
     PUT(r_slot, v, slot);
     Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
     float far = max_lanes(limit);
-    if (lane == v % LANES) {
-      own = e;  // with more vectors than lanes the last wins: then vector_beam is not used
-      own_far = far;
-      vector_beam = make_beam(e, far);
-    }
-    if (VECTORS > LANES) {
+    if (VECTORS > LANES) {  // then vector_beam is not used
       own = Extent(min(own.olo, e.olo), max(own.ohi, e.ohi), min(own.ilo, e.ilo), max(own.ihi, e.ihi), min(own.tmin, e.tmin));
       own_far = max(own_far, far);
+    } else if (lane == v) {
+      own = e;
+      own_far = far;
+      vector_beam = make_beam(e, far);
     }
   }
   if (VECTORS <= LANES && lane >= vectors) vector_beam.farthest = -INFINITY;

@@ -2,6 +2,8 @@
 """The same bytes from every strategy, on every committed scene; and what may differ at edges when camera rays are
 traced instead of rasterised."""
 
+import json
+
 import numpy as np
 import pytest
 from rendering import SCENE_NAMES, Sheaf
@@ -17,8 +19,6 @@ OPTIONS = ("--frames", FRAME, "--aov", "id")
 def strategies(sheaf_once) -> dict:
     """Those that this device has."""
     run = sheaf_once("devices", "--json")
-    import json
-
     has_ray_query = json.loads(run.stdout)[0]["ray_query"]
     return {name: options for name, options in STRATEGIES.items() if has_ray_query or name != "rayquery"}
 
@@ -50,6 +50,21 @@ def test_deeper_finer_and_more_samples(sheaf, strategies, scene):
     pictures = render_all(sheaf, scene, few, "--spp", 2, "--depth", 8, "--cutoff", 0, size="50x31")
     for name, picture in pictures.items():
         assert np.array_equal(picture.rgba.view(np.uint16), pictures["bvh"].rgba.view(np.uint16)), name
+
+
+@pytest.mark.parametrize("scene", ["whitted", "cornell"])
+def test_vectors_of_any_width_give_the_same_pixels(sheaf, sheaf_once, scene):
+    """Bundles of 64 rays are 16 vectors of four lanes on a CPU without AVX, and few of many lanes on a GPU."""
+    if json.loads(sheaf_once("devices", "--json").stdout)[0]["kind"] != "cpu":
+        pytest.skip("the width of a GPU's vectors cannot be chosen")
+    names = ("bvh", "hybrid", "crsh", "frustum", "classify")
+    cases = [(name, bits) for name in names for bits in (256, 128, 512)]
+    calls = [{"scene": scene, "options": (*OPTIONS, "--depth", 3), "strategy": name, "size": "160x90",
+              "env": {"LP_NATIVE_VECTOR_WIDTH": str(bits), "LP_NUM_THREADS": "1"}} for name, bits in cases]
+    pictures = [run.frame(FRAME).rgba.view(np.uint16) for run in sheaf.all(calls)]
+    for (name, bits), picture in zip(cases, pictures):
+        differ = int((picture != pictures[0]).any(-1).sum())
+        assert differ == 0, f"{name}, {bits} bits: {differ} pixels"
 
 
 def beside_an_edge(ids: np.ndarray) -> np.ndarray:
