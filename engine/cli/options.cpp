@@ -102,7 +102,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
   command
       .add_option("--primary", o.primary,
-                  "raster, trace or auto: raster, but where there are more triangles than pixels")
+                  "raster, trace or auto: raster, but where a pixel has more than two triangles")
       ->capture_default_str();
   command.add_option("--aov", o.layers, "layers: Z,N,P,albedo,UV,id,tests or all");
   command.add_option("--compression", o.compression, "none, rle, zips, zip, piz, dwaa")->capture_default_str();

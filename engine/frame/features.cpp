@@ -10,10 +10,9 @@
 namespace sheaf {
 namespace {
 
-// A rasteriser looks at every triangle, a ray at the logarithm. Whole frames on a CPU device, drawn against traced: a
-// city of 0.5 or 1.1 triangles a pixel, most of it hidden, 1.07 and 1.17; spheres of 0.6, 1 and 2.3 a pixel, 0.92, 0.95
-// and 1.04.
-constexpr std::uint64_t most_triangles_a_pixel = 1;
+// A rasteriser looks at every triangle, a ray at the logarithm. Wall time of whole frames of a city of 1 M triangles on
+// a CPU device, drawn against traced: of 1.1 triangles a pixel 0.71, of 2 1.02, of 4.4 1.05, of 9 1.7.
+constexpr std::uint64_t most_triangles_a_pixel = 2;
 
 // Least roughness a material can show anywhere: its factor times the darkest green of its texture.
 float least_roughness(const Scene& scene, const Material& material) {
@@ -119,7 +118,7 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!plan.raster)
     leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels"
                     : settings.primary == PrimaryMethod::trace ? "--primary trace"
-                                                               : "more triangles than pixels: rays are cheaper");
+                                                               : "more than two triangles a pixel: rays are cheaper");
   if (!features.textured) leave("texture filter", "no textures");
   plan.deform = features.skinned || features.morphed;
   if (!plan.deform) leave("deform", "nothing is skinned or morphed over time");
