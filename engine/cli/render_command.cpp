@@ -109,6 +109,7 @@ void Job::render_frame(std::int64_t number) {
   request.time_s = seconds(number);
   request.pose = evaluate_pose(scene_, animations_, request.time_s);
   request.camera = camera_.at(request.pose, request.time_s);
+  request.stop = [] { return interrupted() != 0; };
   RenderedFrame frame = source_->render(request);
   finish_writing();
   writing_ = std::async(std::launch::async, [this, frame = std::move(frame), request = std::move(request)]() mutable {
@@ -139,9 +140,13 @@ int Job::run() {
     source_ = make_frame_source(scene_, animations_, camera_, options_, fps_, wanted.front(), stats_);
     source_->set_dump(dump_.get());
   }
-  for (const auto number : wanted) {
-    if (interrupted() != 0) break;
-    render_frame(number);
+  try {
+    for (const auto number : wanted) {
+      if (interrupted() != 0) break;
+      render_frame(number);
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
   }
   finish_writing();
   save_stats(true);

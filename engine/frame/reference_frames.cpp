@@ -24,6 +24,7 @@ class ReferenceFrames final : public FrameSource {
     s.depth = settings_.depth;
     s.cutoff = settings_.cutoff;
     s.opaque = settings_.opaque;
+    s.stop = request.stop;
     if (settings_.environment) s.environment = glm::dvec3(*settings_.environment);
     const ReferenceFrame frame = render_reference(scene_, request.pose, request.camera, s);
     RenderedFrame out = converted(frame);

@@ -239,6 +239,8 @@ void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, cons
 }
 
 bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile) {
+  if (request.stop && request.stop())
+    throw Error(ErrorKind::interrupted, "frame " + std::to_string(request.number) + ": interrupted");
   camera_hits(request, batch, tile);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
   if (layers_ && settings_.samples.most == 1) layers_->record(recorder_, memory_, tile.pixels());

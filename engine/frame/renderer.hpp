@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct FrameRequest {
   Pose pose;
   CameraView camera;
   std::optional<Tile> only;  // no more than this part of the frame, for a probe
+  /// Asked between batches of samples (the reference: rows); true ends the frame with Error{interrupted}.
+  std::function<bool()> stop;
 };
 
 struct RenderedFrame {

@@ -64,7 +64,7 @@ class Renderer {
     if (stopped()) throw Error(ErrorKind::interrupted, "reference: interrupted");
   }
 
-  [[nodiscard]] bool stopped() const { return settings_.stop != nullptr && settings_.stop->load(); }
+  [[nodiscard]] bool stopped() const { return settings_.stop && settings_.stop(); }
 
   void rows() try {
     ReferenceCounts counts;

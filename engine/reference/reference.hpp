@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -26,12 +26,12 @@ struct ReferenceSettings {
   std::uint32_t width = 640, height = 360, spp = 1;  // spp: where samples are adaptive, the most
   std::optional<double> adaptive_error;              // see AdaptivePixels
   PixelFilter filter = PixelFilter::gaussian;
-  std::uint32_t depth = 4;                  // generations of rays after the camera's
-  double cutoff = 0.002;                    // weights below make no further rays
-  bool opaque = false;                      // every surface opaque: no alpha, no transmission
-  std::optional<glm::dvec3> environment;    // else 0.4 where the scene has no light, 0 where it has
-  std::uint32_t threads = 0;                // 0: as many as the machine has; the picture does not depend on it
-  const std::atomic<bool>* stop = nullptr;  // set from outside: render_reference ends with Error{interrupted}
+  std::uint32_t depth = 4;                // generations of rays after the camera's
+  double cutoff = 0.002;                  // weights below make no further rays
+  bool opaque = false;                    // every surface opaque: no alpha, no transmission
+  std::optional<glm::dvec3> environment;  // else 0.4 where the scene has no light, 0 where it has
+  std::uint32_t threads = 0;              // 0: as many as the machine has; the picture does not depend on it
+  std::function<bool()> stop;             // asked between rows, by any thread: true ends it with Error{interrupted}
 };
 
 struct ReferenceCounts {  // by kind: primary, shadow, reflection, refraction

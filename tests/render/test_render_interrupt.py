@@ -10,8 +10,8 @@ import pytest
 from rendering import PATIENCE, program, read_exr, scene_path
 
 
-def start(out, *options: object) -> subprocess.Popen:
-    command = [program(), "render", scene_path("interpolation"), "--out", out, "--size", "48x24", "--strategy", "bvh",
+def start(out, *options: object, size: str = "48x24", strategy: str = "bvh") -> subprocess.Popen:
+    command = [program(), "render", scene_path("interpolation"), "--out", out, "--size", size, "--strategy", strategy,
                "--frames", "0-99999", "--progress", "json", "--stats", out / "stats.json", *options]
     # A group of its own: a signal meant for it cannot reach the test.
     return subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -34,8 +34,10 @@ def test_interrupted(tmp_path, sheaf, number, code):
     process = start(out)
     events = events_until(process, 3)
     os.kill(process.pid, number)
-    rest, error = process.communicate(timeout=PATIENCE)
-    events += [json.loads(line) for line in rest.splitlines()]
+    assert process.stdout and process.stderr
+    events += [json.loads(line) for line in process.stdout]  # not communicate(): it passes by what was read ahead
+    error = process.stderr.read()
+    process.wait(PATIENCE)
     assert process.returncode == code
     assert "interrupted" in error
     assert events[-1]["event"] == "error"
@@ -54,6 +56,22 @@ def test_interrupted(tmp_path, sheaf, number, code):
     resumed = sheaf.render("interpolation", "--frames", f"0-{last + 1}", "--resume", "--progress", "json", out=out,
                            size="48x24")
     assert [e["frame"] for e in resumed.events() if e["event"] == "frame"] == [last + 1]
+
+
+@pytest.mark.parametrize("strategy", ["bvh", "reference"])
+def test_interrupted_within_a_frame(tmp_path, strategy):
+    """Of so many samples that a frame takes minutes: what was begun is given up, and nothing of it is left."""
+    out = tmp_path / "out"
+    process = start(out, "--spp", 65536, size="320x180", strategy=strategy)
+    assert process.stdout
+    begun = json.loads(process.stdout.readline())
+    assert begun["event"] == "start"
+    time_limit = 30  # seconds: a batch of samples, and under validation
+    os.kill(process.pid, signal.SIGTERM)
+    _, error = process.communicate(timeout=time_limit)
+    assert process.returncode == 143
+    assert "interrupted" in error
+    assert sorted(p.name for p in out.iterdir()) == ["stats.json"]
 
 
 def test_killed_outright(tmp_path, sheaf):

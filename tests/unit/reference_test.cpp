@@ -273,9 +273,8 @@ TEST(Reference, RefusesAndStops) {
   settings = {};
   settings.spp = 0;
   EXPECT_THROW((void)render_reference(b.scene, b.pose, beam({0, 0, 1}, {0, 0, -1}), settings), Error);
-  const std::atomic<bool> stop = true;
   settings = {};
-  settings.stop = &stop;
+  settings.stop = [] { return true; };
   try {
     (void)render_reference(b.scene, b.pose, beam({0, 0, 1}, {0, 0, -1}), settings);
     FAIL();
