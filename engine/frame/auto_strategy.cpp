@@ -55,10 +55,11 @@ struct Contender {
 
 Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
                        const RenderSettings& settings, const FrameRequest& first) {
-  constexpr std::uint64_t probe_pixels = 96 * 1024;  // enough bundles to tell, few enough to cost little
+  constexpr std::uint64_t least_pixels = 96 * 1024,
+                          probe_pixels = 192 * 1024;  // enough bundles to tell what a frame takes
   const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
   Choice choice;
-  if (pixels * settings.samples.most <= probe_pixels) {
+  if (pixels * settings.samples.most <= least_pixels) {
     choice.strategy = Strategy::bvh;
     choice.because =
         "a frame of " + std::to_string(pixels * settings.samples.most) + " samples is too small to probe for";
