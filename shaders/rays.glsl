@@ -36,7 +36,7 @@ struct RayLoad {  // what the ray is for
   uint medium;
 };
 
-// A list is at most 1 GiB (RayMemory), so offsets fit 32 bits.
+// Offsets fit 32 bits: a buffer is at most 4 GiB (checked where it is made).
 RayPairs ray_pairs(uvec2 list, uint slot) { return RayPairs(pack64(list) + uint64_t(slot * (4u * RAY_WORDS))); }
 RayPixel ray_pixel(uvec2 list, uint slot) { return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot))); }
 

@@ -16,8 +16,7 @@ namespace {
 // Bands of the frame at its own resolution, spread over its height: how tight bundles are depends on the resolution,
 // and on what is seen (a city's horizon is where its rays part, its streets where they do not).
 std::vector<Tile> bands_of(const RenderSettings& settings, std::uint64_t pixels) {
-  // Each band pays for its launches again, hybrid for more of them: three of a third the height made it lose where it
-  // wins.
+  // Each band pays for its launches again, hybrid for more of them: bands of 24 and 32 rows made it lose where it wins.
   constexpr std::uint32_t most = 2, block = 8;  // rows of a block of pixels, see generate_primary.comp
   const auto rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(pixels / settings.width, settings.height));
   const std::uint32_t height =
@@ -55,8 +54,8 @@ struct Contender {
 
 Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
                        const RenderSettings& settings, const FrameRequest& first) {
-  constexpr std::uint64_t least_pixels = 96 * 1024,
-                          probe_pixels = 192 * 1024;  // enough bundles to tell what a frame takes
+  // Below the first a probe would take about as long as the frame; the second holds enough bundles to tell.
+  constexpr std::uint64_t least_pixels = 96 * 1024, probe_pixels = 192 * 1024;
   const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
   Choice choice;
   if (pixels * settings.samples.most <= least_pixels) {

@@ -51,8 +51,7 @@ CellWalk::CellWalk(const TraceContext& c, std::uint32_t frustum_sets)
 }
 
 glm::uvec2 CellWalk::frustums_at(std::uint32_t set) const {
-  const std::uint64_t address = frustums_.address() + set * std::uint64_t{cell_room_} * gpu::FRUSTUM_WORDS * 4;
-  return {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32U)};
+  return frustums_.address_words(set * std::uint64_t{cell_room_} * gpu::FRUSTUM_WORDS * 4);
 }
 
 // One level from one half of the pairs' buffer into the other.

@@ -46,8 +46,8 @@ Buffer::~Buffer() {
 
 vk::DeviceAddress Buffer::address() const { return device_->logical().getBufferAddress({*buffer_}); }
 
-glm::uvec2 Buffer::address_words() const {
-  const vk::DeviceAddress at = address();
+glm::uvec2 Buffer::address_words(std::uint64_t offset) const {
+  const vk::DeviceAddress at = address() + offset;
   return {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at >> 32U)};
 }
 

@@ -36,8 +36,8 @@ class Buffer {
     return {static_cast<T*>(mapped_), static_cast<std::size_t>(bytes_ / sizeof(T))};
   }
   [[nodiscard]] vk::DeviceAddress address() const;
-  /// The address, low word first, as structures shared with shaders hold it.
-  [[nodiscard]] glm::uvec2 address_words() const;
+  /// The address, so many bytes on, low word first, as structures shared with shaders hold it.
+  [[nodiscard]] glm::uvec2 address_words(std::uint64_t offset = 0) const;
 
  private:
   void swap(Buffer& other) noexcept;
