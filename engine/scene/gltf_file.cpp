@@ -68,7 +68,7 @@ bool read_whole_file(std::vector<unsigned char>* out, std::string* err, const st
   }
 }
 
-bool file_size(std::size_t* size, std::string*, const std::string& name, void* user) {
+[[maybe_unused]] bool file_size(std::size_t* size, std::string*, const std::string& name, void* user) {
   *size = static_cast<Callbacks*>(user)->folder.size_of(name);
   return true;
 }

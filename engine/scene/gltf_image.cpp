@@ -53,13 +53,26 @@ std::uint64_t decoded_size(const GltfFile& file, std::uint32_t index) {
   return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
 }
 
+// stb_image keeps a thread's last reason and gives none for some failures: what it says of no bytes at all stands for
+// those.
+const char* no_reason() {
+  const stbi_uc nothing = 0;
+  int width = 0, height = 0, channels = 0;
+  (void)stbi_info_from_memory(&nothing, 0, &width, &height, &channels);
+  return stbi_failure_reason();
+}
+
 Image decode(const GltfFile& file, std::uint32_t index) {
   const tinygltf::Image& source = file.model.images[index];
+  const char* const none = no_reason();
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(source.image.data(), static_cast<int>(source.image.size()), &width, &height, &channels, 4),
       &stbi_image_free);
-  if (!pixels) file.fail(at("images", index), std::string("cannot be decoded: ") + stbi_failure_reason());
+  if (!pixels) {
+    const char* const reason = stbi_failure_reason();
+    file.fail(at("images", index), std::string("cannot be decoded: ") + (reason == none ? "it is damaged" : reason));
+  }
   Image image;
   image.name = source.name.empty() ? source.uri : source.name;
   image.width = static_cast<std::uint32_t>(width);

@@ -82,6 +82,10 @@ TEST(MalformedFile, Images) {
   refused("\xabKTX 20\xbb\r\n\x1a\n", "images[0]: KTX2 images are not supported");
   refused("RIFF....WEBPVP8 ", "images[0]: WebP images are not supported");
   refused("\x89PNG\r\n\x1a\n", "images[0]: is not a valid PNG");
+  // Data of more than 2 GiB, by its length: stb_image says no reason then.
+  const char endless[] =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\1\b\2\0\0\0\x7b\x40\xe8\xdd\xdd\0\0\x12IDAT\x01\x01\a\0";
+  refused(std::string(endless, sizeof endless - 1), "images[0]: cannot be decoded: it is damaged");
   refused("nothing at all", "images[0]: unknown images are not supported");
 }
 
