@@ -3,8 +3,10 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <vector>
@@ -98,6 +100,20 @@ std::uint64_t JobFiles::free_bytes() const {
   std::error_code error;
   const fs::space_info space = fs::space(data_, error);
   return error ? 0 : space.available;
+}
+
+std::optional<std::string> JobFiles::write_trouble() const {
+  const fs::path path = data_ / "incoming" / ("." + random_id());
+  const Fd fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  int error = fd.valid() ? 0 : errno;
+  if (fd.valid()) {
+    constexpr std::array<char, 4096> block{};
+    const ssize_t n = ::write(fd.get(), block.data(), block.size());
+    if (n != static_cast<ssize_t>(block.size())) error = n < 0 ? errno : ENOSPC;
+    ::unlink(path.c_str());
+  }
+  if (error == 0) return std::nullopt;
+  return "the data folder cannot be written: " + std::string(std::strerror(error));
 }
 
 std::optional<StoredFile> stored_file(const fs::path& path) {

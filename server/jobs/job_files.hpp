@@ -40,6 +40,10 @@ class JobFiles {
   void remove(const std::string& id) const noexcept;
 
   [[nodiscard]] std::uint64_t free_bytes() const;
+
+  /// Why a file of a few KiB cannot be written here now; nothing if it can.
+  [[nodiscard]] std::optional<std::string> write_trouble() const;
+
   [[nodiscard]] const std::filesystem::path& data() const { return data_; }
 
  private:

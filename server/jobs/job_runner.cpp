@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "jobs/job_runner.hpp"
 
+#include <poll.h>
+
 #include "core/error.hpp"
 #include "jobs/frame_collection.hpp"
 #include "jobs/outcome.hpp"
@@ -16,9 +18,7 @@ std::uint64_t missing_frames(const Job& job) {
   return wanted > job.frames_done ? wanted - job.frames_done : 0;
 }
 
-constexpr int exit_no_device = 4;  // `sheaf`: no usable device, or it was lost
-
-enum class Next { ended, queued, again };
+constexpr auto disk_interval = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -34,11 +34,13 @@ std::vector<std::string> JobRunner::command_of(const Job& job) const {
 
 void JobRunner::run(const std::string& id, const StopSwitch& stop) const noexcept {
   try {
-    bool again = false;
-    do {
+    for (bool again = false;; again = true) {
       const std::optional<Job> job = begin(id, again);
-      again = job && attempt(*job, stop);
-    } while (again);
+      if (!job) return;
+      const Next next = attempt(*job, stop);
+      if (next == Next::ended || next == Next::queued) return;
+      if (next == Next::when_disk_is_well && !wait_for_disk(stop)) return;
+    }
   } catch (const std::exception& error) {
     write_log(LogLevel::error, "job failed", {{"job", id}, {"reason", error.what()}});
     conclude(id, outcome_of_no_start(error.what()));
@@ -76,8 +78,15 @@ Ending JobRunner::run_worker_of(const Job& job, const StopSwitch& stop) const {
   return ending;
 }
 
-/// True if the job is to be tried once more.
-bool JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
+/// False if the job is to be stopped first.
+bool JobRunner::wait_for_disk(const StopSwitch& stop) const {
+  pollfd switched{stop.fd(), POLLIN, 0};
+  while (!stop.asked() && !disk_is_well_())
+    ::poll(&switched, 1, static_cast<int>(std::chrono::milliseconds(disk_interval).count()));
+  return !stop.asked();
+}
+
+JobRunner::Next JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
   write_log(LogLevel::info, "job started", {{"job", job.id}, {"start", job.starts}});
   if (job.starts > 1) verify_frames(store_, files_, job.id);
   ++counters_.worker_starts;
@@ -86,6 +95,7 @@ bool JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
   counters_.work.add(files_.stats(job.id));
   if (ending.worker.exit_code != 0) adopt_frames(store_, files_, job.id);
 
+  const bool full = ending.worker.exit_code == exit_storage && !disk_is_well_();
   // Read last: a client may have asked to cancel until now.
   Outcome outcome;
   Next next = Next::ended;
@@ -93,8 +103,10 @@ bool JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
     ending.cancel_requested = stored.cancel_requested;
     ending.missing = missing_frames(stored);
     outcome = outcome_of(ending);
-    if (outcome.state == JobState::failed && stop.asked()) {  // the service stops
-      next = Next::queued;
+    if (outcome.state == JobState::failed && (stop.asked() || full)) {  // the service stops, or nobody could go on
+      next = stop.asked() ? Next::queued : Next::when_disk_is_well;
+      if (full)
+        events.append("warning", {{"message", outcome.failure->message + "; it goes on when the disk is well"}});
       if (stored.fruitless_starts > 0) --stored.fruitless_starts;
       return requeue_job(stored, events);
     }
@@ -105,13 +117,13 @@ bool JobRunner::attempt(const Job& job, const StopSwitch& stop) const {
     }
     finish_job(stored, events, outcome.state, outcome.failure, options_.retention);
   });
-  if (!there) return false;  // removed meanwhile
-  if (next == Next::again) ++counters_.workers_tried_again;
+  if (!there) return Next::ended;  // removed meanwhile
+  if (next == Next::again || next == Next::when_disk_is_well) ++counters_.workers_tried_again;
   if (next == Next::ended) counters_.ended(outcome.state);
   const char* const state = next == Next::ended ? name_of(outcome.state) : next == Next::again ? "running" : "queued";
   write_log(LogLevel::info, "worker ended",
             {{"job", job.id}, {"state", state}, {"reason", outcome.failure ? outcome.failure->message : ""}});
-  return next == Next::again;
+  return next;
 }
 
 void JobRunner::conclude(const std::string& id, const Outcome& outcome) const {

@@ -30,8 +30,14 @@ struct RunnerOptions {
 
 class JobRunner {
  public:
-  JobRunner(RunnerOptions options, JobStore& store, const JobFiles& files, Counters& counters)
-      : options_(std::move(options)), store_(store), files_(files), counters_(counters) {}
+  /// `disk_is_well`: whether a job that could not write its frames may try again. It may wait for the disk itself.
+  JobRunner(RunnerOptions options, JobStore& store, const JobFiles& files, Counters& counters,
+            std::function<bool()> disk_is_well)
+      : options_(std::move(options)),
+        store_(store),
+        files_(files),
+        counters_(counters),
+        disk_is_well_(std::move(disk_is_well)) {}
 
   /// Runs a queued job to its end; does nothing for one that is not queued any more. Never throws.
   void run(const std::string& id, const StopSwitch& stop) const noexcept;
@@ -42,13 +48,16 @@ class JobRunner {
   [[nodiscard]] std::vector<std::string> command_of(const Job& job) const;
   [[nodiscard]] std::optional<Job> begin(const std::string& id, bool again) const;
   [[nodiscard]] struct Ending run_worker_of(const Job& job, const StopSwitch& stop) const;
-  bool attempt(const Job& job, const StopSwitch& stop) const;
+  enum class Next { ended, queued, again, when_disk_is_well };
+  [[nodiscard]] Next attempt(const Job& job, const StopSwitch& stop) const;
+  [[nodiscard]] bool wait_for_disk(const StopSwitch& stop) const;
   void conclude(const std::string& id, const struct Outcome& outcome) const;
 
   RunnerOptions options_;
   JobStore& store_;
   const JobFiles& files_;
   Counters& counters_;
+  std::function<bool()> disk_is_well_;
 };
 
 }  // namespace sheaf::server

@@ -25,7 +25,7 @@ JobService::JobService(ServiceOptions options, JobStore& store, const JobFiles& 
     : options_(std::move(options)),
       store_(store),
       files_(files),
-      runner_(options_.runner, store, files, counters_),
+      runner_(options_.runner, store, files, counters_, [this] { return !disk_trouble(); }),
       inspector_(options_.runner.sheaf, options_.runner.confinement, options_.limits, inspections_at_once) {
   queue_ =
       std::make_unique<JobQueue>(runner_, options_.jobs_at_once, [this](const std::string& id) { worker_gone(id); });
@@ -92,13 +92,19 @@ JobService::Fitness JobService::fitness() {
   queue_was_full_ = waiting >= limit || (queue_was_full_ && waiting + std::max<std::uint64_t>(1, limit / 10) > limit);
   if (queue_was_full_)
     fitness.queue = std::to_string(waiting) + " jobs are waiting, the limit is " + std::to_string(limit);
+  if (const auto trouble = disk_trouble()) fitness.disk = *trouble;
+  return fitness;
+}
+
+/// Why nothing should be written now; nothing if it can be.
+std::optional<std::string> JobService::disk_trouble() {
+  if (auto trouble = store_.trouble()) return trouble;
+  if (auto trouble = files_.write_trouble()) return trouble;
   const std::uint64_t free = files_.free_bytes(), least = options_.least_free_bytes;
   disk_was_low_ = free < least || (disk_was_low_ && free < least + least / 10);
-  if (disk_was_low_)
-    fitness.disk = "the disk has " + std::to_string(free >> 20) + " MiB left, jobs are taken from " +
-                   std::to_string(least >> 20) + " MiB on";
-  if (const auto trouble = store_.trouble()) fitness.disk = *trouble;
-  return fitness;
+  if (!disk_was_low_) return std::nullopt;
+  return "the disk has " + std::to_string(free >> 20) + " MiB left, jobs are taken from " +
+         std::to_string(least >> 20) + " MiB on";
 }
 
 void JobService::recover(bool fresh) {

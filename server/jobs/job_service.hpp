@@ -86,6 +86,7 @@ class JobService {
 
  private:
   void check_room() const;
+  [[nodiscard]] std::optional<std::string> disk_trouble();
   bool ask_to_stop(Job& job, NewEvents& events);
   bool take_up(const std::string& id);
   [[noreturn]] void refuse_missing(const std::string& id) const;

@@ -16,11 +16,11 @@ Row row_of(int exit_code) {
       return {"worker-usage", "The worker did not understand its command line"};
     case 3:
       return {"bad-scene", "The scene, camera path or settings are bad"};
-    case 4:
+    case exit_no_device:
       return {"device", "There is no usable device, or it was lost"};
     case 5:
       return {"limit-exceeded", "A limit was exceeded"};
-    case 6:
+    case exit_storage:
       return {"storage", "Reading or writing failed"};
     case 128 + SIGINT:
     case 128 + SIGTERM:
@@ -72,7 +72,7 @@ bool is_passing(const Ending& ending) {
     return number == SIGKILL || number == SIGTERM || number == SIGINT || number == SIGHUP;
   }
   const int code = ending.worker.exit_code.value_or(0);
-  return code == 4 || code == 128 + SIGINT || code == 128 + SIGTERM;
+  return code == exit_no_device || code == exit_storage || code == 128 + SIGINT || code == 128 + SIGTERM;
 }
 
 Outcome outcome_of_too_many_starts(std::uint64_t starts) {

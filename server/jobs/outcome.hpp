@@ -22,6 +22,9 @@ struct Ending {
   std::uint64_t missing = 0;  // frames that should be there and are not
 };
 
+constexpr int exit_no_device = 4;  // `sheaf`: no usable device, or it was lost
+constexpr int exit_storage = 6;    // reading or writing failed
+
 struct Outcome {
   JobState state = JobState::failed;
   std::optional<Failure> failure;
@@ -29,8 +32,8 @@ struct Outcome {
 
 [[nodiscard]] Outcome outcome_of(const Ending& ending);
 
-/// The end may well have had nothing to do with the job: a lost device, or a stop or kill from outside (as by a kernel
-/// that is out of memory). A crash is the scene's own.
+/// The end may well have had nothing to do with the job: a lost device, a disk that could not be written, or a stop or
+/// kill from outside (as by a kernel that is out of memory). A crash is the scene's own.
 [[nodiscard]] bool is_passing(const Ending& ending);
 
 /// The service or the worker ended too often to try again.

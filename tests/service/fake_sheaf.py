@@ -229,4 +229,8 @@ if __name__ == "__main__":
         print("[]")
         gone = os.environ.get("FAKE_DEVICES_GONE")  # a file: there is no device as long as it is there
         sys.exit(4 if gone and os.path.exists(gone) else int(os.environ.get("FAKE_DEVICES_EXIT", "0")))
-    render(given)
+    try:
+        render(given)
+    except OSError as error:
+        say(event="error", code=6, message=str(error))
+        sys.exit(6)
