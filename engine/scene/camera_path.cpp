@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/rigid.hpp"
 
@@ -111,7 +112,28 @@ CameraKey key_at(const CameraPath& path, double time) {
   return out;
 }
 
+// Whether what is between two keys can be computed: a position is a sum of four terms, each no longer than these.
+bool is_sound(const CameraPath& path, std::size_t i) {
+  constexpr double room = std::numeric_limits<double>::max() / 16;
+  const auto fits = [](const glm::dvec3& v) { return glm::all(glm::lessThan(glm::abs(v), glm::dvec3(room))); };
+  const CameraKey &a = path.keys[i], &b = path.keys[i + 1];
+  const double span = b.time - a.time;
+  if (!std::isfinite(span)) return false;
+  if (path.interpolation == PathInterpolation::step) return true;
+  if (!fits(a.position) || !fits(b.position)) return false;
+  if (path.interpolation == PathInterpolation::linear) return true;
+  const Velocity va = velocity_at(path, i), vb = velocity_at(path, i + 1);
+  return fits(va.linear * span) && fits(vb.linear * span) && fits(va.angular * span) && fits(vb.angular * span);
+}
+
 }  // namespace
+
+std::optional<std::size_t> first_unsound_key(const CameraPath& path) {
+  if (!std::isfinite(path.keys.back().time - path.keys.front().time)) return 0;
+  for (std::size_t i = 0; i + 1 < path.keys.size(); ++i)
+    if (!is_sound(path, i)) return i;
+  return std::nullopt;
+}
 
 CameraView evaluate_camera_path(const CameraPath& path, double time_s, double aspect) {
   const CameraKey key = key_at(path, time_s);

@@ -46,7 +46,10 @@ struct CameraPath {
 [[nodiscard]] CameraPath load_camera_path(const std::string& path);
 [[nodiscard]] CameraPath parse_camera_path(const std::string& json_text, const std::string& name_for_errors);
 
-/// `aspect` is width / height of the image (needed where fov_axis is horizontal).
+/// The first key from which the motion to the next one cannot be followed in doubles; nothing for a sound path.
+[[nodiscard]] std::optional<std::size_t> first_unsound_key(const CameraPath& path);
+
+/// `path` is sound. `aspect` is width / height of the image (needed where fov_axis is horizontal).
 [[nodiscard]] CameraView evaluate_camera_path(const CameraPath& path, double time_s, double aspect);
 
 /// A scene camera under its node's world matrix. Scale in the node is dropped (rigid part by polar-like

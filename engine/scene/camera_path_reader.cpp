@@ -132,7 +132,12 @@ CameraPath read_path(const JsonObject& object, const nlohmann::json& document) {
 CameraPath parse_camera_path(const std::string& json_text, const std::string& name_for_errors) {
   const nlohmann::json document = parse_json(json_text, name_for_errors);
   const JsonObject object(document, name_for_errors, "");
-  return object.has("camera_path") ? read_nerfstudio_path(object, document) : read_path(object, document);
+  const bool foreign = object.has("camera_path");
+  CameraPath path = foreign ? read_nerfstudio_path(object, document) : read_path(object, document);
+  if (const auto key = first_unsound_key(path))
+    object.fail((foreign ? "camera_path[" : "keys[") + std::to_string(*key) + "]",
+                "the camera moves too far or too fast to the next one for double precision");
+  return path;
 }
 
 CameraPath load_camera_path(const std::string& path) {

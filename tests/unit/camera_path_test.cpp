@@ -199,6 +199,31 @@ TEST(CameraPath, WrongFilesAreRefusedByPlace) {
   }
 }
 
+// What lies between two keys may be far outside what numbers hold, however finite the keys are.
+TEST(CameraPath, MotionBeyondNumbersIsRefused) {
+  const auto key = [](const char* time, const char* z) {
+    return "{\"time\":" + std::string(time) + ",\"position\":[0,0," + z + "],\"rotation\":[0,0,0,1]}";
+  };
+  const auto refused = [](const char* more, const std::string& keys, const char* place) {
+    try {
+      (void)parse(keys, more);
+      ADD_FAILURE() << "was read: " << keys;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      EXPECT_NE(std::string(error.what()).find(place), std::string::npos) << error.what() << " for " << keys;
+    }
+  };
+  const char *const smooth = R"("interpolation":"catmull-rom",)", *const stepped = R"("interpolation":"step",)";
+  const std::string far_apart = key("0", "1e308") + "," + key("1", "-1e308");
+  const std::string sudden = key("0", "0") + "," + key("1e-300", "1") + "," + key("1e10", "2") + "," + key("2e10", "3");
+  refused("", far_apart, "keys[0]: the camera moves too far or too fast");
+  refused(smooth, sudden, "keys[1]: the camera moves too far or too fast");
+  refused("", key("-1e308", "0") + "," + key("1e308", "0"), "keys[0]: ");
+  refused("", key("-1e308", "0") + "," + key("0", "0") + "," + key("1e308", "0"), "keys[0]: ");
+  EXPECT_EQ(parse(far_apart, stepped).keys.size(), 2u);
+  EXPECT_EQ(parse(sudden).keys.size(), 4u);
+}
+
 TEST(CameraPath, Nerfstudio) {
   const std::string text =
       R"({"keyframes":[],"camera_type":"perspective","render_height":540,"render_width":960,"fps":4,"seconds":0.5,
