@@ -49,6 +49,7 @@ class DeviceScene {
   void place_instances(const Pose& pose, std::vector<bool>& moved);
   void place_skins(const Pose& pose, std::vector<bool>& moved);
   void place_lights(const Pose& pose, const CameraView& camera);
+  void choose_origin(const Pose& pose, const CameraView& camera);
   void choose_pad(const CameraView& camera);
   void build_top_level(Recorder& recorder, std::vector<std::vector<std::uint32_t>>& heights);
   Motion list_work(const std::vector<bool>& moved, Recorder& recorder);
