@@ -93,7 +93,7 @@ const tinygltf::Accessor& Accessors::get(int accessor) const {
   return file_.model.accessors[static_cast<std::size_t>(accessor)];
 }
 
-std::size_t Accessors::count(int accessor) const { return get(accessor).count; }
+std::size_t Accessors::count(int accessor) const { return dense(accessor).count; }
 
 int Accessors::width(int accessor) const {
   return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(get(accessor).type));
@@ -135,19 +135,25 @@ Accessors::Source Accessors::window(const std::string& place, int view_index, st
   return {bytes + offset, static_cast<std::size_t>(stride), count};
 }
 
-Accessors::Source Accessors::dense(int index, int width, const std::string& use) const {
+Accessors::Source Accessors::dense(int index) const {
   const tinygltf::Accessor& accessor = get(index);
   const std::string place = accessor_name(index);
-  if (this->width(index) != width) {
-    file_.fail(place, "as " + use + " must have " + std::to_string(width) + " components, not " +
-                          std::to_string(this->width(index)));
-  }
   const std::uint64_t most = std::max<std::uint64_t>(file_.limits.vertices, 3 * file_.limits.triangles);
   if (accessor.count > most) file_.over_limit(place, "has more than " + std::to_string(most) + " elements");
-  if (accessor.bufferView < 0) return {nullptr, 0, accessor.count};
   const std::size_t component = component_size(accessor.componentType);
+  if (component == 0)
+    file_.fail(place + ".componentType", std::to_string(accessor.componentType) + " is none of glTF's");
+  if (accessor.bufferView < 0) return {nullptr, 0, accessor.count};
   return window(place, accessor.bufferView, accessor.byteOffset, accessor.count,
-                component * static_cast<std::size_t>(width), component);
+                component * static_cast<std::size_t>(width(index)), component);
+}
+
+Accessors::Source Accessors::dense(int index, int width, const std::string& use) const {
+  if (this->width(index) != width) {
+    file_.fail(accessor_name(index), "as " + use + " must have " + std::to_string(width) + " components, not " +
+                                         std::to_string(this->width(index)));
+  }
+  return dense(index);
 }
 
 std::vector<std::uint32_t> Accessors::sparse_indices(int index) const {

@@ -31,6 +31,7 @@ class Accessors {
   [[nodiscard]] std::vector<std::uint32_t> integers(int accessor, int width, bool allow_32,
                                                     const std::string& use) const;
 
+  /// How many elements it has, once they are known to be there: whoever makes room for as many need not look again.
   [[nodiscard]] std::size_t count(int accessor) const;
   /// 3 or 4 for VEC3 and VEC4 and so on; 16 for MAT4.
   [[nodiscard]] int width(int accessor) const;
@@ -43,6 +44,7 @@ class Accessors {
   [[nodiscard]] const tinygltf::Accessor& get(int accessor) const;
   [[nodiscard]] Source window(const std::string& place, int view, std::uint64_t offset, std::size_t count,
                               std::size_t element, std::size_t component) const;
+  [[nodiscard]] Source dense(int accessor) const;
   [[nodiscard]] Source dense(int accessor, int width, const std::string& use) const;
   template <class T>
   void overlay_sparse(int accessor, int width, std::vector<T>& values) const;

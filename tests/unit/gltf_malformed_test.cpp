@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Files that are wrong in one place each: an error that names the place, never a crash. Run under the sanitizers too.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <ostream>
 
 #include "core/error.hpp"
@@ -68,7 +71,7 @@ const Case cases[] = {
     {"accessor_type_unknown", "VEC9", "/accessors/0/type", R"("VEC9")"},
     {"accessor_wrong_width", "as POSITION must have 3 components, not 2", "/accessors/0/type", R"("VEC2")"},
     {"accessor_component", "accessors[0].componentType: 9999 is out of range", "/accessors/0/componentType", "9999"},
-    {"accessor_component_int", "accessors[0]: as POSITION cannot be unknown", "/accessors/0/componentType", "5124"},
+    {"accessor_component_int", "accessors[0].componentType: 5124 is none of glTF's", "/accessors/0/componentType", "5124"},
     {"accessor_count_zero", "accessors[0].count: 0 is out of range", "/accessors/0/count", "0"},
     {"accessor_count_huge", "accessors[0]: has more than", "/accessors/0/count", "9007199254740991"},
     {"accessor_past_view", "elements end outside bufferViews[0]", "/accessors/0/count", "4"},
@@ -169,6 +172,30 @@ TEST(WholeDocument, LoadsUnspoilt) {
   const Scene scene = load_gltf(folder.write("scene.gltf", b.text()));
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_EQ(scene.nodes[0].skin, 0u);
+}
+
+// No room is made for elements that a file only claims.
+TEST(MalformedGltfMemory, ElementsThatAreNotThereTakeNone) {
+  GltfBuilder b;
+  b.node_with({{"POSITION", b.accessor(std::vector<float>(9), FLOAT, "VEC3", 3)}});
+  b.doc["accessors"][0]["count"] = 150'000'000;
+  const TempFolder folder;
+  const std::string path = folder.write("scene.gltf", b.text());
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &usual), 0);
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit tight{pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (std::uint64_t{256} << 20),
+                     usual.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &tight), 0);
+  std::string reason;
+  try {
+    (void)load_gltf(path);
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &usual), 0);
+  EXPECT_NE(reason.find("accessors[0]: 150000000 elements end outside"), std::string::npos) << reason;
 }
 
 }  // namespace
