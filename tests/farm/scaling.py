@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""How a farm on this machine gets faster with workers, and what a chunk costs whoever hands it out.
+"""How a farm on this machine gets faster with workers, and what a frame costs whoever hands it out.
 
     tests/farm/scaling.py --sheaf build/sheaf --workers 1,2,3,4 --frames 24          the engine, one core a worker
     tests/farm/scaling.py --sheaf build/sheaf --workers 1,2 --frames 24 --all-cores  the engine, all cores each
     tests/farm/scaling.py --pace 0.5 --workers 1,4,16,32 --frames 4 --bytes 8000000  a worker that only waits, as for a
                                                                                      device; frames are a worker's share
 
-Prints a table; `ms a chunk` is the processor time of scheduler and client, which are one process here.
+Prints a table; `ms a frame` is the processor time of scheduler and client, which are one process here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from dataclasses import dataclass
 from distributed import Client, LocalCluster
 from sheaf import farm
 
-SCENE = pathlib.Path(__file__).resolve().parent / "../scenes/cornell.glb"
+# Moves in each of its 96 frames: the engine renders one that equals the last only once.
+SCENE = pathlib.Path(__file__).resolve().parent / "../scenes/whitted.glb"
 
 # Stands in for `sheaf`: waits for each frame, then writes so many bytes. `-I -S`: its own start must cost little.
 WAITING = """#!{python} -IS
@@ -47,7 +48,7 @@ class Row:
     workers: int
     frames: int
     seconds: float
-    chunk_ms: float
+    frame_ms: float
 
 
 @contextmanager
@@ -133,7 +134,7 @@ def main() -> None:
             os.chmod(program, 0o755)
         first: Row | None = None
         print(
-            "| workers | frames | seconds | frames a second | of one worker's, times | ms a chunk |"
+            "| workers | frames | seconds | frames a second | of one worker's, times | ms a frame |"
         )
         print("| --- | --- | --- | --- | --- | --- |")
         for workers in map(int, given.workers.split(",")):
@@ -149,7 +150,7 @@ def main() -> None:
                 f"{row.seconds:.1f}",
                 f"{rate:.2f}",
                 f"{rate / alone:.2f}",
-                f"{row.chunk_ms:.1f}",
+                f"{row.frame_ms:.1f}",
             )
             print("|", " | ".join(map(str, cells)), "|")
     print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the end")
