@@ -2,7 +2,7 @@
 """Many clients at once, while service and workers are killed: what is lost, what is twice, and how long a status takes.
 
     tests/load/load.py --build build --seconds 600                  with the fake worker of tests/service
-    tests/load/load.py --build build --seconds 600 --real           with the engine and tests/scenes/cornell.glb
+    tests/load/load.py --build build --seconds 600 --real           with the engine and tests/scenes/whitted.glb
 
 Ends with 1 if anything was lost, came twice or was answered in a way that the contract does not name.
 """
@@ -53,8 +53,8 @@ async def use(given: argparse.Namespace, target: Target, ledger: Ledger) -> list
     limits = httpx.Limits(max_connections=None, max_keepalive_connections=given.clients)
     async with httpx.AsyncClient(base_url=target.url, timeout=60, limits=limits) as http:
         contract = Contract((await http.get("/openapi.json")).json())
-        scene = (HERE / "../scenes/cornell.glb").read_bytes() if given.real else SCENE
-        name = "cornell.glb" if given.real else "scene.gltf"
+        scene = (HERE / "../scenes/whitted.glb").read_bytes() if given.real else SCENE
+        name = "whitted.glb" if given.real else "scene.gltf"
         killer = Killer(target, given.kill_every, given.seed) if given.kill_every > 0 else None
         if killer:
             killer.start()
