@@ -20,6 +20,25 @@ std::vector<std::uint32_t> declared_roles(std::span<const std::uint32_t> spirv) 
   return roles;
 }
 
+namespace {
+
+vk::raii::Pipeline make_pipeline(const Device& device, std::string_view stem, vk::PipelineLayout layout,
+                                 std::span<const SpecConstant> constants) {
+  const auto module = make_shader_module(device, stem);
+  std::vector<vk::SpecializationMapEntry> entries;
+  std::vector<std::uint32_t> values;
+  for (const auto& constant : constants) {
+    entries.emplace_back(constant.id, static_cast<std::uint32_t>(values.size() * 4), 4);
+    values.push_back(constant.value);
+  }
+  const vk::SpecializationInfo special(static_cast<std::uint32_t>(entries.size()), entries.data(), values.size() * 4,
+                                       values.data());
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special);
+  return {device.logical(), device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, layout)};
+}
+
+}  // namespace
+
 PipelineLayout::PipelineLayout(const Device& device, std::vector<std::uint32_t> roles, vk::ShaderStageFlags stages)
     : roles_(std::move(roles)) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
@@ -41,18 +60,11 @@ vk::raii::ShaderModule make_shader_module(const Device& device, std::string_view
 
 Kernel::Kernel(const Device& device, std::string_view stem, std::span<const SpecConstant> constants)
     : stem_(stem), layout_(device, declared_roles(shader_code(stem)), vk::ShaderStageFlagBits::eCompute) {
-  const auto module = make_shader_module(device, stem);
-  std::vector<vk::SpecializationMapEntry> entries;
-  std::vector<std::uint32_t> values;
-  for (const auto& constant : constants) {
-    entries.emplace_back(constant.id, static_cast<std::uint32_t>(values.size() * 4), 4);
-    values.push_back(constant.value);
-  }
-  const vk::SpecializationInfo special(static_cast<std::uint32_t>(entries.size()), entries.data(), values.size() * 4,
-                                       values.data());
-  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special);
-  pipeline_ = vk::raii::Pipeline(device.logical(), device.pipeline_cache(),
-                                 vk::ComputePipelineCreateInfo({}, stage, layout_.handle()));
+  auto make = [&device, stem = stem_, layout = layout_.handle(),
+               given = std::vector(constants.begin(), constants.end())] {
+    return make_pipeline(device, stem, layout, given);
+  };
+  pipeline_ = std::async(std::launch::async, std::move(make)).share();
 }
 
 }  // namespace sheaf

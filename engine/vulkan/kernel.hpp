@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,19 +42,22 @@ class PipelineLayout {  // push descriptors for the roles, push constants of pus
 
 [[nodiscard]] vk::raii::ShaderModule make_shader_module(const Device& device, std::string_view stem);
 
+/// Made on a thread of its own: drivers translate a shader for a hundredth of a second or more, and a frame needs
+/// dozens.
 class Kernel {
  public:
   Kernel() = default;
   Kernel(const Device& device, std::string_view stem, std::span<const SpecConstant> constants = {});
   [[nodiscard]] explicit operator bool() const { return !stem_.empty(); }
   [[nodiscard]] const std::string& stem() const { return stem_; }
-  [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
+  /// Waits until it is made; rethrows what went wrong then.
+  [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_.get(); }
   [[nodiscard]] const PipelineLayout& layout() const { return layout_; }
 
  private:
   std::string stem_;
   PipelineLayout layout_;
-  vk::raii::Pipeline pipeline_{nullptr};
+  std::shared_future<vk::raii::Pipeline> pipeline_;
 };
 
 }  // namespace sheaf
