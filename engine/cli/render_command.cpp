@@ -42,7 +42,9 @@ class Job {
   int run();
 
  private:
-  void render_frame(std::int64_t number);
+  [[nodiscard]] FrameRequest request_for(std::int64_t number) const;
+  void render_all(const std::vector<std::int64_t>& numbers);
+  void render_frame(FrameRequest request);
   void write(RenderedFrame frame, const FrameRequest& request);
   void finish_writing();
   void save_stats(bool last);
@@ -103,13 +105,31 @@ void Job::write(RenderedFrame frame, const FrameRequest& request) {
   stats_.frames.push_back(std::move(frame.stats));
 }
 
-void Job::render_frame(std::int64_t number) {
+FrameRequest Job::request_for(std::int64_t number) const {
   FrameRequest request;
   request.number = number;
   request.time_s = seconds(number);
   request.pose = evaluate_pose(scene_, animations_, request.time_s);
   request.camera = camera_.at(request.pose, request.time_s);
   request.stop = [] { return interrupted() != 0; };
+  return request;
+}
+
+// While a frame renders, the next one is posed and the one before is compressed and written.
+void Job::render_all(const std::vector<std::int64_t>& numbers) {
+  const auto pose = [this](std::int64_t number) {
+    return std::async(std::launch::async, [this, number] { return request_for(number); });
+  };
+  std::future<FrameRequest> next;
+  if (!numbers.empty()) next = pose(numbers.front());
+  for (std::size_t n = 0; n < numbers.size() && interrupted() == 0; ++n) {
+    FrameRequest request = next.get();
+    if (n + 1 < numbers.size()) next = pose(numbers[n + 1]);
+    render_frame(std::move(request));
+  }
+}
+
+void Job::render_frame(FrameRequest request) {
   RenderedFrame frame = source_->render(request);
   finish_writing();
   writing_ = std::async(std::launch::async, [this, frame = std::move(frame), request = std::move(request)]() mutable {
@@ -141,10 +161,7 @@ int Job::run() {
     source_->set_dump(dump_.get());
   }
   try {
-    for (const auto number : wanted) {
-      if (interrupted() != 0) break;
-      render_frame(number);
-    }
+    render_all(wanted);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) throw;
   }

@@ -52,7 +52,7 @@ struct Contender {
 
 }  // namespace
 
-Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
+Choice choose_strategy(const Device& device, const std::shared_ptr<DeviceScene>& scene, const Features& features,
                        const RenderSettings& settings, const FrameRequest& first) {
   // Below the first a probe would take about as long as the frame; the second holds enough bundles to tell.
   constexpr std::uint64_t least_pixels = 96 * 1024, probe_pixels = 192 * 1024;
@@ -70,6 +70,7 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
   small.counted = false;
   small.layers = {};
   const auto bands = bands_of(settings, probe_pixels);
+  small.most_pixels = bands.front().pixels() * 5 / 4;  // a band may make more rays a pixel than a frame
   std::array<Contender, 2> contenders{Contender{Strategy::bvh, {}, {}}, Contender{Strategy::hybrid, {}, {}}};
   for (auto& contender : contenders) {
     contender.renderer = std::make_unique<Renderer>(device, scene, features, small, contender.strategy);
@@ -79,6 +80,7 @@ Choice choose_strategy(const Device& device, const Scene& scene, const Features&
   constexpr int turns = 3;
   for (int turn = 0; turn < turns; ++turn)
     for (auto& contender : contenders) contender.take_turn(first, bands);
+  scene->forget();  // the first frame's figures are of all that it needs
   const auto& [plain, bundled] = contenders;
   // A tie goes to bvh: it starts sooner, and needs less memory.
   choice.strategy = bundled.total_ms() < 0.95 * plain.total_ms() ? bundled.strategy : plain.strategy;

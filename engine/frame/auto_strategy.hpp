@@ -14,7 +14,9 @@ struct Choice {
   std::string because;
 };
 
-[[nodiscard]] Choice choose_strategy(const Device& device, const Scene& scene, const Features& features,
-                                     const RenderSettings& settings, const FrameRequest& first);
+/// The scene needs its object hierarchy.
+[[nodiscard]] Choice choose_strategy(const Device& device, const std::shared_ptr<DeviceScene>& scene,
+                                     const Features& features, const RenderSettings& settings,
+                                     const FrameRequest& first);
 
 }  // namespace sheaf

@@ -13,9 +13,9 @@ constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
 }  // namespace
 
-DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& scene, const RenderSettings& settings,
-                         const Plan& plan)
-    : scene_(scene), plan_(plan), layout_(lay_out(scene, settings)) {
+DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, bool hierarchy)
+    : scene_(scene), hierarchy_(hierarchy), layout_(lay_out(scene, settings)) {
+  Recorder recorder(device);
   indices_ = upload(device, recorder, "indices", layout_.indices, by_address);
   positions_ = upload(device, recorder, "positions", layout_.positions, by_address);
   normals_ = upload(device, recorder, "normals", layout_.normals, by_address);
@@ -34,7 +34,7 @@ DeviceScene::DeviceScene(const Device& device, Recorder& recorder, const Scene& 
                     Kind::device, by_address);
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
   weights_ = Buffer(device, "morph weights", std::uint64_t{layout_.morph_weights} * 4, Kind::upload);
-  if (plan.object_hierarchy) {
+  if (hierarchy) {
     if (layout_.node_children.size() / wide > gpu::MAX_NODES)
       throw limit_error(scene.path, std::to_string(layout_.triangles) + " triangles need more than " +
                                         std::to_string(gpu::MAX_NODES) + " nodes of the object hierarchy");

@@ -23,12 +23,14 @@ struct Motion {  // what a frame's animate and objects stages have to do; all ze
 
 class DeviceScene {
  public:
-  DeviceScene(const Device& device, Recorder& recorder, const Scene& scene, const RenderSettings& settings,
-              const Plan& plan);
+  /// `hierarchy`: with an object hierarchy (Plan::object_hierarchy). The scene must outlive it.
+  DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, bool hierarchy);
 
   /// Moves everything to a pose. `origin` is the frame origin; triangles are relative to it.
   [[nodiscard]] Motion update(const Pose& pose, const CameraView& camera, Recorder& recorder);
   void bind(Recorder& recorder) const;
+  /// The next update takes everything for moved.
+  void forget() { fresh_ = true; }
 
   [[nodiscard]] const SceneLayout& layout() const { return layout_; }
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
@@ -55,7 +57,7 @@ class DeviceScene {
   Motion list_work(const std::vector<bool>& moved, Recorder& recorder);
 
   const Scene& scene_;
-  const Plan& plan_;
+  const bool hierarchy_;
   SceneLayout layout_;
   Buffer indices_, positions_, normals_, tangents_, uvs_, colors_, materials_, texels_;
   Buffer triangles_, instances_, lights_, nodes_, dynamic_;

@@ -194,7 +194,7 @@ Motion DeviceScene::list_work(const std::vector<bool>& moved, Recorder& recorder
     if (moved[layout_.deforms[d].instance])
       for (std::uint32_t v = 0; v < layout_.deforms[d].vertex_count; v += gpu::GROUP)
         vertices[motion.vertex_blocks++] = {d, v};
-  if (!plan_.object_hierarchy) return motion;
+  if (!hierarchy_) return motion;
   std::vector<std::vector<std::uint32_t>> heights(layout_.refit_by_height.size());
   for (std::size_t h = 0; h < layout_.refit_by_height.size(); ++h)
     for (const auto node : layout_.refit_by_height[h])
@@ -243,7 +243,7 @@ Motion DeviceScene::update(const Pose& pose, const CameraView& camera, Recorder&
   choose_pad(camera);
   if (fresh_) moved.assign(moved.size(), true);
   fresh_ = false;
-  if (layout_.instances.empty() && plan_.object_hierarchy) {
+  if (layout_.instances.empty() && hierarchy_) {
     std::vector<std::vector<std::uint32_t>> heights;
     build_top_level(recorder, heights);
   }

@@ -12,11 +12,11 @@ namespace {
 
 class DeviceFrames final : public FrameSource {
  public:
-  DeviceFrames(std::unique_ptr<Device> device, const Scene& scene, const Features& features,
+  DeviceFrames(std::unique_ptr<Device> device, std::shared_ptr<DeviceScene> scene, const Features& features,
                const RenderSettings& settings, Strategy strategy)
       : device_(std::move(device)),
         still_(!features.geometry_moves() && !features.moving_camera && !features.moving_lights),
-        renderer_(*device_, scene, features, settings, strategy) {}
+        renderer_(*device_, std::move(scene), features, settings, strategy) {}
 
   RenderedFrame render(const FrameRequest& request) override {
     if (kept_) {  // neither geometry nor camera nor light moves: one picture for all frames
@@ -72,17 +72,21 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
   stats.device_name = device->summary().name;
   stats.driver = device->summary().driver;
   Choice choice{settings.strategy, "asked for"};
-  if (settings.strategy == Strategy::automatic) {
+  const bool automatic = settings.strategy == Strategy::automatic;
+  const bool hierarchy = automatic || make_plan(features, settings, settings.strategy).object_hierarchy;
+  auto on_device = std::make_shared<DeviceScene>(*device, scene, settings, hierarchy);
+  if (automatic) {
     FrameRequest first;
     first.number = first_frame;
     first.time_s = static_cast<double>(first_frame) / fps;
     first.pose = evaluate_pose(scene, animations, first.time_s);
     first.camera = camera.at(first.pose, first.time_s);
-    choice = choose_strategy(*device, scene, features, settings, first);
+    choice = choose_strategy(*device, on_device, features, settings, first);
   }
   stats.strategy = name_of(choice.strategy);
   stats.chosen_because = choice.because;
-  auto frames = std::make_unique<DeviceFrames>(std::move(device), scene, features, settings, choice.strategy);
+  auto frames =
+      std::make_unique<DeviceFrames>(std::move(device), std::move(on_device), features, settings, choice.strategy);
   stats.left_out = frames->renderer().plan().left_out;
   stats.scene.triangles = frames->renderer().scene().layout().triangles;
   stats.scene.instances = frames->renderer().scene().layout().instances.size();

@@ -64,7 +64,8 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   const std::uint64_t budget = (settings.memory_mib << 20U) - (plan.packets ? walk_budget(settings) : 0);
   const std::uint64_t spare = plan.refractions && plan.reflections ? 2 : 1;  // a hit there makes up to two rays
   const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
-  const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;
+  const std::uint64_t wanted =
+      std::min<std::uint64_t>(std::uint64_t{settings.width} * settings.height, settings.most_pixels) * per_pixel;
   std::uint64_t slots = std::min(budget / bytes_per_slot(plan, features), wanted);
   slots = std::min(slots, most_slots(device.limits().storage_range, settings, per_pixel));
   slots = std::min<std::uint64_t>(slots, std::uint64_t{1} << 24U);

@@ -14,16 +14,16 @@ constexpr std::uint32_t generations_a_submit = 4;  // between looks at whether a
 
 }  // namespace
 
-Renderer::Renderer(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
-                   Strategy strategy)
+Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, const Features& features,
+                   const RenderSettings& settings, Strategy strategy)
     : device_(device),
       features_(features),
       settings_(settings),
       plan_(make_plan(features, settings, strategy)),
       recorder_(device),
-      scene_(device, recorder_, scene, settings, plan_),
-      memory_(make_ray_memory(device, settings, plan_, features, scene_.lights())),
-      animate_(device, plan_, !scene_.layout().deforms.empty()),
+      scene_(std::move(scene)),
+      memory_(make_ray_memory(device, settings, plan_, features, scene_->lights())),
+      animate_(device, plan_, !scene_->layout().deforms.empty()),
       objects_(device, plan_),
       generate_(device, plan_, features_, settings.counted),
       compact_(device),
@@ -34,11 +34,11 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Features& fea
   if (plan_.raster) raster_.emplace(device, features_);
   if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
   if (memory_.sample_places) std::copy(places_.begin(), places_.end(), memory_.sample_places.view<glm::vec2>().begin());
-  tracer_ = make_tracer({device_, scene_, memory_, plan_, features_, settings_, strategy, settings.counted});
+  tracer_ = make_tracer({device_, *scene_, memory_, plan_, features_, settings_, strategy, settings.counted});
 }
 
 void Renderer::bind_all() {
-  scene_.bind(recorder_);
+  scene_->bind(recorder_);
   recorder_.bind(ROLE_FRAME, memory_.frame);
   recorder_.bind(ROLE_COUNTERS, memory_.counters);
   recorder_.bind(ROLE_ARGS, memory_.args);
@@ -51,7 +51,7 @@ void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Til
   gpu::Frame f{};
   const double aspect = static_cast<double>(settings_.width) / settings_.height;
   const double half_y = camera.orthographic ? camera.half_height : camera.tan_half_y;
-  f.eye = glm::vec3(glm::dvec3(camera.to_world[3]) - scene_.origin());
+  f.eye = glm::vec3(glm::dvec3(camera.to_world[3]) - scene_->origin());
   f.right = glm::vec3(glm::dvec3(camera.to_world[0]) * (half_y * aspect));
   f.up = glm::vec3(glm::dvec3(camera.to_world[1]) * half_y);
   f.forward = glm::vec3(-glm::dvec3(camera.to_world[2]));
@@ -69,17 +69,17 @@ void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Til
   const double share =
       2 * half_y / settings_.height / std::sqrt(adaptive_ ? 2.0 * AdaptivePixels::first_round : settings_.samples.most);
   (camera.orthographic ? f.cone_width : f.cone_spread) = static_cast<float>(share);
-  f.lights = scene_.lights();
-  f.triangles = scene_.triangles();
+  f.lights = scene_->lights();
+  f.triangles = scene_->triangles();
   f.capacity = memory_.capacity;
-  f.instances = static_cast<std::uint32_t>(scene_.layout().instances.size());
+  f.instances = static_cast<std::uint32_t>(scene_->layout().instances.size());
   f.sample_index = batch.first;
-  f.box_pad = scene_.box_pad();
+  f.box_pad = scene_->box_pad();
   f.tile_x = tile.x;
   f.tile_y = tile.y;
   f.tile_width = tile.width;
   f.tile_height = tile.height;
-  scene_.set_addresses(f);
+  scene_->set_addresses(f);
   f.sums_at = memory_.accumulation.address_words();
   recorder_.update(memory_.frame, &f, sizeof(f));
 }
@@ -95,12 +95,12 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   out.stats.counted = settings_.counted;
 
   const std::uint64_t dispatched = recorder_.dispatches();
-  const Motion motion = scene_.update(request.pose, request.camera, recorder_);
+  const Motion motion = scene_->update(request.pose, request.camera, recorder_);
   bind_all();
   const Tile whole = request.only.value_or(Tile{0, 0, settings_.width, settings_.height});
   set_frame(request.camera, {}, whole);
-  animate_.record(recorder_, scene_, motion);
-  objects_.record(recorder_, scene_, motion);
+  animate_.record(recorder_, *scene_, motion);
+  objects_.record(recorder_, *scene_, motion);
   tracer_->objects_moved(recorder_, motion);
   if (dump_ != nullptr) {
     dump_->begin(request.number);
@@ -121,7 +121,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   out.stats.dispatches = recorder_.dispatches() - dispatched;
   std::uint64_t rays = 0;
   for (const auto count : out.stats.rays) rays += count;
-  out.stats.brute_force = rays * scene_.triangles();
+  out.stats.brute_force = rays * scene_->triangles();
   out.stats.wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
   return out;
 }
@@ -152,12 +152,10 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   if (adaptive_) return render_round(request, tile, out);
   if (layers_) render_layers(request, tile);
   for (std::uint32_t sample = 0; sample < settings_.samples.most; ++sample) {
-    if (render_batch(request, {sample, 1, tile.pixels()}, tile)) continue;
+    if (render_batch(request, {sample, 1, tile.pixels()}, tile, sample + 1 == settings_.samples.most)) continue;
     if (dump_ != nullptr) dump_->rewind();
     return false;
   }
-  resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples.most);
-  finish_tile(tile);
   store_tile(tile, out);
   return true;
 }
@@ -171,7 +169,7 @@ bool Renderer::render_round(const FrameRequest& request, const Tile& tile, Rende
   std::uint32_t at_once = std::clamp(memory_.tile_pixels / active, 1U, all);
   for (std::uint32_t done = 0; done < all;) {
     const std::uint32_t samples = std::min(at_once, all - done);
-    if (render_batch(request, {first + done, samples, samples * active}, tile)) {
+    if (render_batch(request, {first + done, samples, samples * active}, tile, done + samples == all)) {
       done += samples;
       continue;
     }
@@ -181,8 +179,6 @@ bool Renderer::render_round(const FrameRequest& request, const Tile& tile, Rende
     done = 0;
     begin_tile(tile);
   }
-  recorder_.copy(memory_.accumulation, memory_.accumulation_readback, std::uint64_t{tile.pixels()} * 32);
-  finish_tile(tile);
   store_round(tile);
   store_counts(tile, out);
   return true;
@@ -220,25 +216,30 @@ void Renderer::begin_tile(const Tile& tile) {
   if (dump_ != nullptr) dump_->mark();
 }
 
+// Recorded behind the last batch, before it is known whether that one's rays fitted: a wait less for each tile.
 void Renderer::finish_tile(const Tile& tile) {
+  if (adaptive_)
+    recorder_.copy(memory_.accumulation, memory_.accumulation_readback, std::uint64_t{tile.pixels()} * 32);
+  else
+    resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples.most);
   recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
   if (memory_.pixel_tests)
     recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
   recorder_.copy(memory_.records, memory_.records_readback, records_.size() * gpu::COUNT_WORDS * 4);
-  recorder_.submit_and_wait();
 }
 
 void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile) {
   set_frame(request.camera, batch, tile);
   recorder_.fill(memory_.counters, 0);
-  if (raster_) raster_->record(recorder_, scene_, memory_, tile, settings_.width, settings_.height);
+  if (raster_) raster_->record(recorder_, *scene_, memory_, tile, settings_.width, settings_.height);
   generate_.primary(recorder_, memory_, batch.rays);
   if (raster_) return;
   compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, batch.rays);
   tracer_->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
 }
 
-bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile) {
+// False where its rays did not fit the lists. The last batch of a tile also brings its sums and counts to the host.
+bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last) {
   if (request.stop && request.stop())
     throw Error(ErrorKind::interrupted, "frame " + std::to_string(request.number) + ": interrupted");
   camera_hits(request, batch, tile);
@@ -260,6 +261,7 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
     if (counters[gpu::COUNT_PARENTS] == 0) break;
   }
   recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);
+  if (last) finish_tile(tile);
   recorder_.submit_and_wait();
   return counters[gpu::COUNT_OVERFLOW] == 0;
 }
@@ -273,7 +275,7 @@ void Renderer::trace(const RayList& list, std::uint32_t kind, std::uint32_t gene
 
 void Renderer::set_dump(DumpWriter* dump) {
   dump_ = dump;
-  if (dump != nullptr && !list_dump_) list_dump_.emplace(device_, scene_, memory_);
+  if (dump != nullptr && !list_dump_) list_dump_.emplace(device_, *scene_, memory_);
 }
 
 // The device's counters now say how many rays the list had, how it was sorted and bundled.

@@ -46,12 +46,13 @@ struct RenderedFrame {
 class Renderer {
  public:
   /// `strategy` is a device strategy, not automatic or reference.
-  Renderer(const Device& device, const Scene& scene, const Features& features, const RenderSettings& settings,
-           Strategy strategy);
+  /// The scene may serve several renderers of one device, one frame after the other.
+  Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, const Features& features,
+           const RenderSettings& settings, Strategy strategy);
 
   [[nodiscard]] RenderedFrame render(const FrameRequest& request);
   [[nodiscard]] const Plan& plan() const { return plan_; }
-  [[nodiscard]] const DeviceScene& scene() const { return scene_; }
+  [[nodiscard]] const DeviceScene& scene() const { return *scene_; }
   /// Every ray traced from now on goes there too; null: no more.
   void set_dump(DumpWriter* dump);
 
@@ -69,7 +70,7 @@ class Renderer {
   void begin_tile(const Tile& tile);
   void finish_tile(const Tile& tile);
   void camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile);
-  [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile);
+  [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);
   void trace_shadows(std::uint32_t generation);
   void note_record(std::uint32_t kind, std::uint32_t generation);
@@ -86,7 +87,7 @@ class Renderer {
   const RenderSettings settings_;
   const Plan plan_;
   Recorder recorder_;
-  DeviceScene scene_;
+  std::shared_ptr<DeviceScene> scene_;
   RayMemory memory_;
   Animate animate_;
   Objects objects_;

@@ -54,7 +54,7 @@ void Renderer::collect_generations(RenderedFrame& out) {
     found->sort_reason = why_sorted(plan_, settings_, kind);
     if (!found->sorted) continue;
     found->key_bits =
-        plan_.classes ? TraverseClasses::key_bits : key_layout(kind, scene_.lights(), memory_.tile_pixels).bits();
+        plan_.classes ? TraverseClasses::key_bits : key_layout(kind, scene_->lights(), memory_.tile_pixels).bits();
     found->chunks += counters[gpu::COUNT_CHUNKS];
   }
 }
@@ -89,7 +89,7 @@ void Renderer::store_adaptive(RenderedFrame& out) const {
 
 void Renderer::store_counts(const Tile& tile, RenderedFrame& out) {
   if (layers_ && (!adaptive_ || adaptive_->first_sample() == 0))
-    Layers::store(memory_, tile, scene_.origin(), out.layers);
+    Layers::store(memory_, tile, scene_->origin(), out.layers);
   if (!out.layers.tests.empty()) {
     const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
     for (std::uint32_t i = 0; i < tile.pixels(); ++i)

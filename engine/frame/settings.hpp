@@ -38,6 +38,7 @@ struct RenderSettings {
   PrimaryMethod primary = PrimaryMethod::automatic;
   bool opaque = false;
   LayerSet layers;
+  std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame
   std::uint64_t memory_mib = 1024;  // for rays, pairs and what else scales with the picture, not with the scene
   std::optional<glm::vec3> environment;
   bool counted = true;

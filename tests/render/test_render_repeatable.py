@@ -103,6 +103,13 @@ def test_auto_says_why(sheaf):
     assert same(run.frame(), sheaf.render("cornell").frame())
 
 
+def test_auto_takes_no_more_memory_than_its_choice(sheaf):
+    auto = sheaf.render("cornell", "--count", "off", size="1280x720", strategy="auto", stats=True).stats()
+    fixed = sheaf.render("cornell", "--count", "off", size="1280x720", strategy=auto["strategy"], stats=True).stats()
+    took, needed = (run["totals"]["peak_device_mib"] for run in (auto, fixed))
+    assert took <= 1.02 * needed
+
+
 def test_lossless_compressions_hold_the_same_pixels(sheaf):
     ways = ("zip", "none", "rle", "zips", "piz")
     runs = sheaf.all({"scene": "still_life", "options": ("--compression", way), "size": "33x17"} for way in ways)
