@@ -12,6 +12,7 @@ struct Triangle {
   uint instance;
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Triangles { Triangle triangle[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer TriangleWords { uint word[]; };
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_MATERIALS, readonly, Material, materials);
 BUFFER(ROLE_WORK, readonly, uvec2, work);  // (instance, first triangle within it)
@@ -19,9 +20,7 @@ layout(push_constant) uniform Push { uint blocks; } push;
 
 vec3 world_position(Instance i, uint v) {
   if (i.dynamic != NO_INDEX) return load_dynamic(3u * (i.dynamic + v));
-  vec3 p = load_position(i.first_vertex + v);
-  precise vec3 world = vec3(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p)) + i.translation;
-  return world;
+  return to_world(i.row0, i.row1, i.row2, i.translation, load_position(i.first_vertex + v));
 }
 
 void main() {
@@ -36,6 +35,10 @@ void main() {
   uint flags = materials[i.material].flags;
   uint word = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
               ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u);
+  if (POSED) {
+    TriangleWords(frame.triangles_at).word[t] = word;
+    return;
+  }
   Triangles(frame.triangles_at).triangle[t] =
       Triangle(world_position(i, load_index(first)), world_position(i, load_index(first + 1u)),
                world_position(i, load_index(first + 2u)), word);

@@ -6,6 +6,7 @@
 #define SHEAF_MEMORY_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
+layout(constant_id = 12) const bool POSED = false;  // triangles are posed whenever they are read: only their last word is kept
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs { uint64_t pair[TRIANGLE_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer NodePairs { uint64_t pair[NODE_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WordPairs { uint64_t pair[INSTANCE_WORDS / 2]; };
@@ -26,10 +27,6 @@ vec3 load_normal(uint i) { return OneVec3(pack64(frame.normals_at) + uint64_t(i 
 vec3 load_dynamic(uint i) { return OneVec3(pack64(frame.dynamic_at) + uint64_t(i * 12u)).v; }
 vec4 load_tangent(uint i) { return OneVec4(pack64(frame.tangents_at) + uint64_t(i * 16u)).v; }
 vec4 load_color(uint i) { return OneVec4(pack64(frame.colors_at) + uint64_t(i * 16u)).v; }
-
-vec3 load_corner(uint triangle, uint corner) {
-  return OneVec3(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS) + 12u * corner)).v;
-}
 
 // Words 2k … 2k + 3 of a structure.
 vec4 load_four(uvec2 buffer_at, uint offset, uint k) {
@@ -90,7 +87,33 @@ Corners unpack_triangle(uvec2 p0, uvec2 p1, uvec2 p2, uvec2 p3, uvec2 p4) {
   return Corners(v0.xyz, vec3(v0.w, v1.xy), vec3(v1.zw, uintBitsToFloat(p4.x)), p4.y);
 }
 
+// The same arithmetic wherever a triangle is posed: its corners are the same bits in memory and out of it.
+vec3 to_world(vec3 row0, vec3 row1, vec3 row2, vec3 translation, vec3 p) {
+  precise vec3 world = vec3(dot(row0, p), dot(row1, p), dot(row2, p)) + translation;
+  return world;
+}
+
+// Words of Instance, in pairs: rows and translation first, then where its mesh lies.
+Corners pose_triangle(uint triangle) {
+  uint word = OneUint(pack64(frame.triangles_at) + uint64_t(4u * triangle)).v;
+  uint at = (word & TRIANGLE_INSTANCE_MASK) * (4u * INSTANCE_WORDS);
+  uvec2 triangles = load_pair(frame.instances_at, at, 11u), index_vertex = load_pair(frame.instances_at, at, 12u);
+  uint dynamic = load_pair(frame.instances_at, at, 15u).x;
+  uint first = index_vertex.x + 3u * (triangle - triangles.x);
+  uvec3 v = uvec3(load_index(first), load_index(first + 1u), load_index(first + 2u));
+  if (dynamic != NO_INDEX) {
+    v = 3u * (v + dynamic);
+    return Corners(load_dynamic(v.x), load_dynamic(v.y), load_dynamic(v.z), word);
+  }
+  v += index_vertex.y;
+  vec4 a = load_four(frame.instances_at, at, 0u), b = load_four(frame.instances_at, at, 2u), c = load_four(frame.instances_at, at, 4u);
+  vec3 row0 = a.xyz, row1 = vec3(a.w, b.xy), row2 = vec3(b.zw, c.x), translation = c.yzw;
+  return Corners(to_world(row0, row1, row2, translation, load_position(v.x)), to_world(row0, row1, row2, translation, load_position(v.y)),
+                 to_world(row0, row1, row2, translation, load_position(v.z)), word);
+}
+
 Corners load_triangle(uint triangle) {
+  if (POSED) return pose_triangle(triangle);
   TrianglePairs words = triangle_pairs(triangle);
   return unpack_triangle(unpack32(words.pair[0]), unpack32(words.pair[1]), unpack32(words.pair[2]), unpack32(words.pair[3]),
                          unpack32(words.pair[4]));

@@ -180,7 +180,8 @@ SHEAF_CONST LAYER_OBJECT = 12u;
 SHEAF_CONST LAYER_MATERIAL = 13u;
 SHEAF_CONST LAYER_WORDS = 14u;
 
-// Triangles in world space, relative to the frame origin: corners a, b, c, then the word of instance and flags (below).
+// Triangles in world space, relative to the frame origin: corners a, b, c, then the word of instance and flags (below). Of posed
+// ones (Plan::posed) only that word.
 SHEAF_CONST TRIANGLE_WORDS = 10u;
 SHEAF_CONST TRIANGLE_INSTANCE = 9u;
 

@@ -104,6 +104,11 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       .add_option("--primary", o.primary,
                   "raster, trace or auto: raster, but where a pixel has more than two triangles")
       ->capture_default_str();
+  command
+      .add_option("--instances", o.instances,
+                  "copied: a triangle an instance (fast), shared: posed when read (small), or auto: shared from 8 "
+                  "million copied triangles on")
+      ->capture_default_str();
   command.add_option("--aov", o.layers, "layers: Z,N,P,albedo,UV,id,tests or all");
   command.add_option("--compression", o.compression, "none, rle, zips, zip, piz, dwaa")->capture_default_str();
   command.add_option("--name", o.name, "file names; default <scene>.####.exr");
@@ -136,6 +141,9 @@ void resolve_options(RenderOptions& o) {
   s.primary = one_of<PrimaryMethod>(
       "primary", o.primary,
       {{"auto", PrimaryMethod::automatic}, {"raster", PrimaryMethod::raster}, {"trace", PrimaryMethod::trace}});
+  s.instances = one_of<InstancePolicy>(
+      "instances", o.instances,
+      {{"auto", InstancePolicy::automatic}, {"copied", InstancePolicy::copied}, {"shared", InstancePolicy::shared}});
   s.layers = parse_layers(o.layers);
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));

@@ -27,7 +27,8 @@ struct RenderOptions {
   std::string size = "1280x720", filter = "gaussian";
   std::string quality;
   std::optional<std::string> spp;
-  std::string strategy = "auto", sort = "auto", primary = "auto", layers, compression = "zip", name, environment;
+  std::string strategy = "auto", sort = "auto", primary = "auto", instances = "auto", layers, compression = "zip", name,
+              environment;
   std::string stats, dump, device, progress = "auto", count = "auto";
   std::optional<std::uint32_t> depth;
   std::optional<float> cutoff;

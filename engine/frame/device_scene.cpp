@@ -13,8 +13,8 @@ constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
 }  // namespace
 
-DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, bool hierarchy)
-    : scene_(scene), hierarchy_(hierarchy), layout_(lay_out(scene, settings)) {
+DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, const Plan& plan)
+    : scene_(scene), hierarchy_(plan.object_hierarchy), posed_(plan.posed), layout_(lay_out(scene, settings)) {
   Recorder recorder(device);
   indices_ = upload(device, recorder, "indices", layout_.indices, by_address);
   positions_ = upload(device, recorder, "positions", layout_.positions, by_address);
@@ -28,13 +28,14 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderS
   joints_ = upload(device, recorder, "joints", layout_.joints);
   morphs_ = upload(device, recorder, "morph targets", layout_.morphs);
   using Kind = Buffer::Kind;
-  triangles_ = Buffer(device, "triangles", layout_.triangles * gpu::TRIANGLE_WORDS * 4, Kind::device, by_address);
+  triangles_ =
+      Buffer(device, "triangles", layout_.triangles * (posed_ ? 1 : gpu::TRIANGLE_WORDS) * 4, Kind::device, by_address);
   instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload, by_address);
   dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3),
                     Kind::device, by_address);
   matrices_ = Buffer(device, "joint matrices", std::uint64_t{layout_.skin_matrices} * 12 * 4, Kind::upload);
   weights_ = Buffer(device, "morph weights", std::uint64_t{layout_.morph_weights} * 4, Kind::upload);
-  if (hierarchy) {
+  if (hierarchy_) {
     if (layout_.node_children.size() / wide > gpu::MAX_NODES)
       throw limit_error(scene.path, std::to_string(layout_.triangles) + " triangles need more than " +
                                         std::to_string(gpu::MAX_NODES) + " nodes of the object hierarchy");

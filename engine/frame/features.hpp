@@ -16,8 +16,9 @@ namespace sheaf {
 
 struct Features {
   std::uint32_t lights = 0;
-  std::uint64_t triangles = 0;
-  bool default_light = false;  // the scene has none of its own
+  std::uint64_t triangles = 0;           // with all instances
+  std::uint64_t distinct_triangles = 0;  // each mesh once
+  bool default_light = false;            // the scene has none of its own
   bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
   bool textured = false, normal_mapped = false, unlit = false, emissive = false;
   bool skinned = false, morphed = false, moving_nodes = false, moving_camera = false, moving_lights = false;
@@ -37,6 +38,7 @@ struct Plan {
   bool sorts = false, ray_hierarchy = false, object_hierarchy = false, bundles = false, packets = false,
        spheres = false;
   bool classes = false;  // rays are sorted by class, also camera rays
+  bool posed = false;    // triangles are posed from their instances when read, and not kept in world space
   std::vector<LeftOut> left_out;
 };
 

@@ -73,8 +73,8 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
   stats.driver = device->summary().driver;
   Choice choice{settings.strategy, "asked for"};
   const bool automatic = settings.strategy == Strategy::automatic;
-  const bool hierarchy = automatic || make_plan(features, settings, settings.strategy).object_hierarchy;
-  auto on_device = std::make_shared<DeviceScene>(*device, scene, settings, hierarchy);
+  const Plan plan = make_plan(features, settings, automatic ? Strategy::bvh : settings.strategy);
+  auto on_device = std::make_shared<DeviceScene>(*device, scene, settings, plan);
   if (automatic) {
     FrameRequest first;
     first.number = first_frame;

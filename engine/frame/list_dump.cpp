@@ -2,6 +2,7 @@
 #include "frame/list_dump.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
 
@@ -9,17 +10,19 @@ namespace sheaf {
 namespace {
 
 // Of the triangles' read-back: a scene may be larger than any one buffer.
-constexpr std::uint64_t piece_bytes = std::uint64_t{40} << 20U;
+constexpr std::size_t piece = std::size_t{1} << 20U;
+constexpr vk::BufferUsageFlags by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;  // no binding's limit holds
 
 }  // namespace
 
 ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
-  triangles_ = Buffer(device, "dump", std::min(scene.triangle_words().bytes(), piece_bytes), Kind::readback);
-  // Never bound, so no binding's limit holds for it.
-  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_SLOT_BYTES, Kind::readback,
-                 vk::BufferUsageFlagBits::eShaderDeviceAddress);
+  triangles_ = Buffer(device, "dump", std::min<std::uint64_t>(scene.triangles(), piece) * gpu::TRIANGLE_WORDS * 4,
+                      Kind::readback, by_address);
+  rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_SLOT_BYTES, Kind::readback, by_address);
+  const std::array posed{SpecConstant{12, 1}};
+  if (scene.posed()) pose_ = Kernel(device, "dump_triangles", posed);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
   counters_ = Buffer(device, "dump", gpu::COUNT_WORDS * 4, Kind::readback);
@@ -28,17 +31,27 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
 void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
   const std::size_t count = scene_.triangles();
   host_corners_.assign(count * 9, 0);
-  constexpr std::size_t at_once = piece_bytes / (gpu::TRIANGLE_WORDS * 4);
-  for (std::size_t first = 0; first < count; first += at_once) {
-    const std::size_t triangles = std::min(at_once, count - first);
-    recorder.copy(scene_.triangle_words(), triangles_, triangles * gpu::TRIANGLE_WORDS * 4,
-                  first * gpu::TRIANGLE_WORDS * 4);
-    recorder.submit_and_wait();
-    const auto from = triangles_.view<float>();
-    for (std::size_t t = 0; t < triangles; ++t)
-      for (std::size_t c = 0; c < 9; ++c) host_corners_[(first + t) * 9 + c] = from[t * gpu::TRIANGLE_WORDS + c];
-  }
+  for (std::size_t first = 0; first < count; first += piece)
+    read_triangles(recorder, first, std::min(piece, count - first));
   writer.triangles(host_corners_, scene_.origin());
+}
+
+void ListDump::read_triangles(Recorder& recorder, std::size_t first, std::size_t count) {
+  if (pose_) {
+    const struct {
+      std::uint64_t to;
+      std::uint32_t first, count;
+    } push{triangles_.address(), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
+    recorder.dispatch(pose_, push, (count + gpu::GROUP - 1) / gpu::GROUP);
+  } else {
+    recorder.copy(scene_.triangle_words(), triangles_, count * gpu::TRIANGLE_WORDS * 4,
+                  first * gpu::TRIANGLE_WORDS * 4);
+  }
+  recorder.submit_and_wait();
+  const std::size_t words = pose_ ? 9 : gpu::TRIANGLE_WORDS;
+  const auto from = triangles_.view<float>();
+  for (std::size_t t = 0; t < count; ++t)
+    for (std::size_t c = 0; c < 9; ++c) host_corners_[(first + t) * 9 + c] = from[t * words + c];
 }
 
 // u, v as most tracers give them: P = (1 − u − v)·v0 + u·v1 + v·v2.

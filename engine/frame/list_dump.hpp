@@ -5,6 +5,7 @@
 #include "frame/device_scene.hpp"
 #include "frame/dump_writer.hpp"
 #include "frame/ray_lists.hpp"
+#include "vulkan/kernel.hpp"
 #include "vulkan/recorder.hpp"
 
 namespace sheaf {
@@ -19,10 +20,12 @@ class ListDump {
             std::uint32_t slots);
 
  private:
+  void read_triangles(Recorder& recorder, std::size_t first, std::size_t count);
   [[nodiscard]] HitRecord record_of(const float* ray, std::uint32_t triangle, float t) const;
 
   const DeviceScene& scene_;
   const RayMemory& memory_;
+  Kernel pose_;
   Buffer triangles_, rays_, hits_, order_, counters_;
   std::vector<float> host_corners_;  // 9 a triangle
 };

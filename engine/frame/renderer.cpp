@@ -31,7 +31,7 @@ Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, con
       resolve_(device),
       places_(pixel_samples(settings.filter, settings.samples.most)) {
   places_.emplace_back(0.5);
-  if (plan_.raster) raster_.emplace(device, features_);
+  if (plan_.raster) raster_.emplace(device, plan_, features_);
   if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
   if (memory_.sample_places) std::copy(places_.begin(), places_.end(), memory_.sample_places.view<glm::vec2>().begin());
   tracer_ = make_tracer({device_, *scene_, memory_, plan_, features_, settings_, strategy, settings.counted});

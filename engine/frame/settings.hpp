@@ -16,6 +16,7 @@ namespace sheaf {
 enum class Strategy { automatic, hybrid, crsh, rsh, frustum, classify, bvh, brute, rayquery, reference };
 enum class SortPolicy { automatic, on, off };
 enum class PrimaryMethod { automatic, raster, trace };
+enum class InstancePolicy { automatic, copied, shared };
 
 [[nodiscard]] Strategy parse_strategy(const std::string& name);  // Error{usage} naming what there is
 [[nodiscard]] const char* name_of(Strategy strategy);
@@ -36,6 +37,7 @@ struct RenderSettings {
   Strategy strategy = Strategy::automatic;
   SortPolicy sort = SortPolicy::automatic;
   PrimaryMethod primary = PrimaryMethod::automatic;
+  InstancePolicy instances = InstancePolicy::automatic;
   bool opaque = false;
   LayerSet layers;
   std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "stages/animate.hpp"
 
+#include <array>
+
 namespace sheaf {
 
-Animate::Animate(const Device& device, const Plan&, bool deforms) : triangles_(device, "animate_triangles") {
+Animate::Animate(const Device& device, const Plan& plan, bool deforms) {
+  const std::array constants{SpecConstant{12, plan.posed}};
+  triangles_ = Kernel(device, "animate_triangles", constants);
   if (deforms) vertices_ = Kernel(device, "animate_vertices");
 }
 

@@ -11,10 +11,10 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
   primary_ = Kernel(device, "generate_primary", first);
   const SpecConstant one{0, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
-  const std::array constants{SpecConstant{1, plan.shadows},     SpecConstant{2, plan.reflections},
-                             SpecConstant{3, plan.refractions}, SpecConstant{4, plan.textured_normals},
-                             SpecConstant{5, features.volumes}, SpecConstant{6, counted},
-                             SpecConstant{9, features.textured}};
+  const std::array constants{SpecConstant{1, plan.shadows},      SpecConstant{2, plan.reflections},
+                             SpecConstant{3, plan.refractions},  SpecConstant{4, plan.textured_normals},
+                             SpecConstant{5, features.volumes},  SpecConstant{6, counted},
+                             SpecConstant{9, features.textured}, SpecConstant{12, plan.posed}};
   generate_ = Kernel(device, "generate", constants);
 }
 

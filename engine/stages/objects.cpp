@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "stages/objects.hpp"
 
+#include <array>
+
 namespace sheaf {
 
 Objects::Objects(const Device& device, const Plan& plan) {
-  if (plan.object_hierarchy) refit_ = Kernel(device, "objects_refit");
+  const std::array constants{SpecConstant{12, plan.posed}};
+  if (plan.object_hierarchy) refit_ = Kernel(device, "objects_refit", constants);
 }
 
 void Objects::record(Recorder& recorder, const DeviceScene& scene, const Motion& motion) const {

@@ -20,18 +20,18 @@ std::vector<std::uint32_t> roles_of_both() {
 
 }  // namespace
 
-Raster::Raster(const Device& device, const Features& features)
+Raster::Raster(const Device& device, const Plan& plan, const Features& features)
     : device_(device), layout_(device, roles_of_both(), both_stages) {
   // No attachments: what a fragment finds goes to the visibility buffer by a 64-bit minimum.
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics);
   pass_ = vk::raii::RenderPass(device.logical(), vk::RenderPassCreateInfo({}, {}, subpass));
 
   const auto vertex = make_shader_module(device, "raster_vert"), fragment = make_shader_module(device, "raster_frag");
-  const vk::SpecializationMapEntry entry(2, 0, 4);
-  const vk::Bool32 masked = features.masked;
-  const vk::SpecializationInfo special(1, &entry, 4, &masked);
+  const std::array entries{vk::SpecializationMapEntry(2, 0, 4), vk::SpecializationMapEntry(12, 4, 4)};
+  const std::array<vk::Bool32, 2> values{features.masked, plan.posed};
+  const vk::SpecializationInfo special(entries.size(), entries.data(), sizeof(values), values.data());
   const std::array stages{
-      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
+      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main", &special),
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main", &special)};
   const vk::PipelineVertexInputStateCreateInfo input;
   const vk::PipelineInputAssemblyStateCreateInfo assembly({}, vk::PrimitiveTopology::eTriangleList);

@@ -15,7 +15,7 @@ struct Tile {
 
 class Raster {
  public:
-  Raster(const Device& device, const Features& features);
+  Raster(const Device& device, const Plan& plan, const Features& features);
   void record(Recorder& recorder, const DeviceScene& scene, const RayMemory& memory, const Tile& tile,
               std::uint32_t width, std::uint32_t height);
 

@@ -16,8 +16,9 @@ namespace sheaf {
 
 std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hit) {
   const bool translucent = c.features.translucent() || c.features.masked;
-  return {{1, any_hit},   {2, c.features.masked},       {3, any_hit && translucent},
-          {6, c.counted}, {7, c.settings.layers.tests}, {9, c.features.textured}};
+  return {{1, any_hit},      {2, c.features.masked},       {3, any_hit && translucent},
+          {6, c.counted},    {7, c.settings.layers.tests}, {9, c.features.textured},
+          {12, c.plan.posed}};
 }
 
 std::vector<SpecConstant> lane_constants(const Device& device) {

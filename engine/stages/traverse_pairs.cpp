@@ -15,8 +15,9 @@ std::uint32_t groups(std::uint64_t items) { return static_cast<std::uint32_t>((i
 
 }  // namespace
 
-TraversePairs::TraversePairs(const TraceContext& c)
-    : context_(c), hierarchy_(c.device), spheres_(c.device, "objects_spheres"), compact_(c.device, "pairs") {
+TraversePairs::TraversePairs(const TraceContext& c) : context_(c), hierarchy_(c.device), compact_(c.device, "pairs") {
+  const std::array posed{SpecConstant{12, c.plan.posed}};
+  spheres_ = Kernel(c.device, "objects_spheres", posed);
   if (c.plan.sorts) sort_ = SortRays(c);
   const std::array counting{SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}};
   test_ = Kernel(c.device, "traverse_pairs", counting);

@@ -35,7 +35,7 @@ class DeviceWorld {
         features_(find_features(scene_source_, {}, settings_, false)),
         plan_(plan_for(options)),
         recorder_(device()),
-        scene_(device(), scene_source_, settings_, plan_.object_hierarchy),
+        scene_(device(), scene_source_, settings_, plan_),
         memory_(make_ray_memory(device(), settings_, plan_, features_, 1)),
         context_{device(), scene_, memory_, plan_, features_, settings_, options.strategy, true},
         compact_(device()) {
