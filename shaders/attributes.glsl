@@ -12,11 +12,6 @@ Looks looks_of(uint index) {
   return Looks(instance, load_material(instance.material));
 }
 
-uvec3 triangle_vertices(Instance instance, uint triangle) {
-  uint first = instance.first_index + 3u * (triangle - instance.first_triangle);
-  return uvec3(load_index(first), load_index(first + 1u), load_index(first + 2u));
-}
-
 vec2 interpolate_uv(uint base, uvec3 v, vec3 b) {
   return base == NO_INDEX ? vec2(0) : load_uv(base + v.x) * b.x + load_uv(base + v.y) * b.y + load_uv(base + v.z) * b.z;
 }

@@ -79,7 +79,7 @@ Boxes load_boxes(uint node) {
 }
 
 Corners load_corners(uint triangle) {
-  if (POSED) return pose_triangle(triangle);
+  if (POSED) return load_posed(triangle);
   TrianglePairs words = triangle_pairs(triangle);
   Held h = Held(unpack32(words.pair[min(lane, 4u)]), LANES < 8u ? unpack32(words.pair[4]) : uvec2(0));
   return unpack_triangle(HELD(h, 0u), HELD(h, 1u), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Corners of the triangles from `first` on, as `--dump` writes them: where none lie in memory.
+// Corners of the triangles from `first` on, as `--dump` writes them.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"

@@ -87,33 +87,31 @@ Corners unpack_triangle(uvec2 p0, uvec2 p1, uvec2 p2, uvec2 p3, uvec2 p4) {
   return Corners(v0.xyz, vec3(v0.w, v1.xy), vec3(v1.zw, uintBitsToFloat(p4.x)), p4.y);
 }
 
-// The same arithmetic wherever a triangle is posed: its corners are the same bits in memory and out of it.
-vec3 to_world(vec3 row0, vec3 row1, vec3 row2, vec3 translation, vec3 p) {
-  precise vec3 world = vec3(dot(row0, p), dot(row1, p), dot(row2, p)) + translation;
+uvec3 triangle_vertices(Instance instance, uint triangle) {
+  uint first = instance.first_index + 3u * (triangle - instance.first_triangle);
+  return uvec3(load_index(first), load_index(first + 1u), load_index(first + 2u));
+}
+
+// The same bits in whichever kernel.
+vec3 world_position(Instance i, uint v) {
+  if (i.dynamic != NO_INDEX) return load_dynamic(3u * (i.dynamic + v));
+  vec3 p = load_position(i.first_vertex + v);
+  precise vec3 world = vec3(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p)) + i.translation;
   return world;
 }
 
-// Words of Instance, in pairs: rows and translation first, then where its mesh lies.
-Corners pose_triangle(uint triangle) {
+Corners pose_triangle(Instance instance, uint triangle, uint word) {
+  uvec3 v = triangle_vertices(instance, triangle);
+  return Corners(world_position(instance, v.x), world_position(instance, v.y), world_position(instance, v.z), word);
+}
+
+Corners load_posed(uint triangle) {
   uint word = OneUint(pack64(frame.triangles_at) + uint64_t(4u * triangle)).v;
-  uint at = (word & TRIANGLE_INSTANCE_MASK) * (4u * INSTANCE_WORDS);
-  uvec2 triangles = load_pair(frame.instances_at, at, 11u), index_vertex = load_pair(frame.instances_at, at, 12u);
-  uint dynamic = load_pair(frame.instances_at, at, 15u).x;
-  uint first = index_vertex.x + 3u * (triangle - triangles.x);
-  uvec3 v = uvec3(load_index(first), load_index(first + 1u), load_index(first + 2u));
-  if (dynamic != NO_INDEX) {
-    v = 3u * (v + dynamic);
-    return Corners(load_dynamic(v.x), load_dynamic(v.y), load_dynamic(v.z), word);
-  }
-  v += index_vertex.y;
-  vec4 a = load_four(frame.instances_at, at, 0u), b = load_four(frame.instances_at, at, 2u), c = load_four(frame.instances_at, at, 4u);
-  vec3 row0 = a.xyz, row1 = vec3(a.w, b.xy), row2 = vec3(b.zw, c.x), translation = c.yzw;
-  return Corners(to_world(row0, row1, row2, translation, load_position(v.x)), to_world(row0, row1, row2, translation, load_position(v.y)),
-                 to_world(row0, row1, row2, translation, load_position(v.z)), word);
+  return pose_triangle(load_instance(word & TRIANGLE_INSTANCE_MASK), triangle, word);
 }
 
 Corners load_triangle(uint triangle) {
-  if (POSED) return pose_triangle(triangle);
+  if (POSED) return load_posed(triangle);
   TrianglePairs words = triangle_pairs(triangle);
   return unpack_triangle(unpack32(words.pair[0]), unpack32(words.pair[1]), unpack32(words.pair[2]), unpack32(words.pair[3]),
                          unpack32(words.pair[4]));

@@ -117,15 +117,14 @@ FrameRequest Job::request_for(std::int64_t number) const {
 
 // While a frame renders, the next one is posed and the one before is compressed and written.
 void Job::render_all(const std::vector<std::int64_t>& numbers) {
-  const auto pose = [this](std::int64_t number) {
-    return std::async(std::launch::async, [this, number] { return request_for(number); });
-  };
-  std::future<FrameRequest> next;
-  if (!numbers.empty()) next = pose(numbers.front());
+  if (numbers.empty()) return;
+  FrameRequest request = request_for(numbers.front());
   for (std::size_t n = 0; n < numbers.size() && interrupted() == 0; ++n) {
-    FrameRequest request = next.get();
-    if (n + 1 < numbers.size()) next = pose(numbers[n + 1]);
+    std::future<FrameRequest> next;
+    if (n + 1 < numbers.size())
+      next = std::async(std::launch::async, [this, number = numbers[n + 1]] { return request_for(number); });
     render_frame(std::move(request));
+    if (next.valid()) request = next.get();
   }
 }
 

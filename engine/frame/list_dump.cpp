@@ -18,11 +18,11 @@ constexpr vk::BufferUsageFlags by_address = vk::BufferUsageFlagBits::eShaderDevi
 ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
     : scene_(scene), memory_(memory) {
   using Kind = Buffer::Kind;
-  triangles_ = Buffer(device, "dump", std::min<std::uint64_t>(scene.triangles(), piece) * gpu::TRIANGLE_WORDS * 4,
+  triangles_ = Buffer(device, "dump", std::min<std::uint64_t>(scene.triangles(), piece) * 9 * sizeof(float),
                       Kind::readback, by_address);
   rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_SLOT_BYTES, Kind::readback, by_address);
-  const std::array posed{SpecConstant{12, 1}};
-  if (scene.posed()) pose_ = Kernel(device, "dump_triangles", posed);
+  const std::array constants{SpecConstant{12, scene.posed()}};
+  corners_ = Kernel(device, "dump_triangles", constants);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);
   counters_ = Buffer(device, "dump", gpu::COUNT_WORDS * 4, Kind::readback);
@@ -37,21 +37,13 @@ void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
 }
 
 void ListDump::read_triangles(Recorder& recorder, std::size_t first, std::size_t count) {
-  if (pose_) {
-    const struct {
-      std::uint64_t to;
-      std::uint32_t first, count;
-    } push{triangles_.address(), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
-    recorder.dispatch(pose_, push, (count + gpu::GROUP - 1) / gpu::GROUP);
-  } else {
-    recorder.copy(scene_.triangle_words(), triangles_, count * gpu::TRIANGLE_WORDS * 4,
-                  first * gpu::TRIANGLE_WORDS * 4);
-  }
+  const struct {
+    std::uint64_t to;
+    std::uint32_t first, count;
+  } push{triangles_.address(), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
+  recorder.dispatch(corners_, push, (count + gpu::GROUP - 1) / gpu::GROUP);
   recorder.submit_and_wait();
-  const std::size_t words = pose_ ? 9 : gpu::TRIANGLE_WORDS;
-  const auto from = triangles_.view<float>();
-  for (std::size_t t = 0; t < count; ++t)
-    for (std::size_t c = 0; c < 9; ++c) host_corners_[(first + t) * 9 + c] = from[t * words + c];
+  std::copy_n(triangles_.view<float>().begin(), count * 9, &host_corners_[first * 9]);
 }
 
 // u, v as most tracers give them: P = (1 − u − v)·v0 + u·v1 + v·v2.

@@ -25,7 +25,7 @@ class ListDump {
 
   const DeviceScene& scene_;
   const RayMemory& memory_;
-  Kernel pose_;
+  Kernel corners_;
   Buffer triangles_, rays_, hits_, order_, counters_;
   std::vector<float> host_corners_;  // 9 a triangle
 };
