@@ -9,7 +9,6 @@ namespace sheaf {
 namespace {
 
 constexpr std::uint32_t max_lights = 4096;
-constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
 }  // namespace
 

@@ -11,7 +11,6 @@ namespace {
 
 // Of the triangles' read-back: a scene may be larger than any one buffer.
 constexpr std::size_t piece = std::size_t{1} << 20U;
-constexpr vk::BufferUsageFlags by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;  // no binding's limit holds
 
 }  // namespace
 

@@ -12,7 +12,6 @@ constexpr std::uint64_t pixel_bytes = 32 + 8 + 16 * 2;        // accumulation, v
 constexpr std::uint64_t sort_bytes = 4 + 4 + 12 * 2 + 4 + 1;  // keys, kept order, chunks twice, skeleton, digit counts
 constexpr std::uint64_t packet_bytes = 4 + 8;                 // key, and at worst a packet of its own
 constexpr std::uint32_t least_capacity = 1024;
-constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;  // or never bound: no binding's limit holds
 
 std::uint64_t bytes_per_slot(const Plan& plan, const Features& features) {
   std::uint64_t lists = 1;  // primary

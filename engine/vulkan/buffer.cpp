@@ -14,12 +14,12 @@ Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t byte
   using Usage = vk::BufferUsageFlagBits;
   using Property = vk::MemoryPropertyFlagBits;
   const auto usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst | Usage::eIndirectBuffer | extra;
-  const bool by_address = static_cast<bool>(extra & Usage::eShaderDeviceAddress);
-  if (bytes_ > device.limits().storage_range && !by_address)
+  const bool addressed = static_cast<bool>(extra & by_address);
+  if (bytes_ > device.limits().storage_range && !addressed)
     throw limit_error(name, std::to_string(bytes_) + " bytes exceed the device's largest storage buffer (" +
                                 std::to_string(device.limits().storage_range) + ")");
   constexpr std::uint64_t most_by_address = std::uint64_t{1} << 32U;  // offsets in shaders are 32 bits (memory.glsl)
-  if (bytes_ > most_by_address && by_address)
+  if (bytes_ > most_by_address && addressed)
     throw limit_error(name, std::to_string(bytes_) + " bytes exceed " + std::to_string(most_by_address));
   try {
     buffer_ = vk::raii::Buffer(device.logical(), vk::BufferCreateInfo({}, bytes_, usage));
@@ -29,7 +29,7 @@ Buffer::Buffer(const Device& device, const std::string& name, std::uint64_t byte
     if (kind == Kind::readback) wanted = Property::eHostVisible | Property::eHostCoherent;
     vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
     vk::MemoryAllocateInfo info(needs.size, device.memory_type(needs.memoryTypeBits, wanted));
-    if (by_address) info.pNext = &flags;
+    if (addressed) info.pNext = &flags;
     memory_ = vk::raii::DeviceMemory(device.logical(), info);
     buffer_.bindMemory(*memory_, 0);
     allocated_ = needs.size;

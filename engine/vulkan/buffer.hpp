@@ -11,6 +11,9 @@
 
 namespace sheaf {
 
+/// What a buffer that shaders read by address, or not at all, is made with: no binding's limit holds its size.
+constexpr auto by_address = vk::BufferUsageFlagBits::eShaderDeviceAddress;
+
 /// A storage buffer with its own memory. Host-visible ones stay mapped (coherent).
 class Buffer {
  public:
