@@ -22,6 +22,7 @@ const uint HELD_LEAVES = 2u * VECTORS;
 uint held = 0u;                                       // leaves that wait, of this lane (bundle_leaves.glsl)
 
 #include "bundle_queue.glsl"
+#include "loads_together.glsl"
 
 Extent extent_of(Extent mine) {
   return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
@@ -63,26 +64,6 @@ Beam load_bundle() {
   }
   if (VECTORS <= LANES && lane >= vectors) vector_beam.farthest = -INFINITY;
   return make_beam(extent_of(own), max_lanes(own_far));
-}
-
-// Pairs of words that all lanes want, held a pair a lane, or two where there are but four lanes.
-struct Held {
-  uvec2 low, high;
-};
-
-#define HELD(h, k) (LANES < 8u && (k) >= 4u ? subgroupBroadcast((h).high, (k) & 3u) : subgroupBroadcast((h).low, (k)))
-
-Boxes load_boxes(uint node) {
-  NodePairs words = node_pairs(node);
-  Held h = Held(unpack32(words.pair[lane & 7u]), LANES < 8u ? unpack32(words.pair[4u + (lane & 3u)]) : uvec2(0));
-  return Boxes(unpack_grid(HELD(h, 0u), HELD(h, 1u)), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u), HELD(h, 5u), HELD(h, 6u), HELD(h, 7u));
-}
-
-Corners load_corners(uint triangle) {
-  if (POSED) return load_posed(triangle);
-  TrianglePairs words = triangle_pairs(triangle);
-  Held h = Held(unpack32(words.pair[min(lane, 4u)]), LANES < 8u ? unpack32(words.pair[4]) : uvec2(0));
-  return unpack_triangle(HELD(h, 0u), HELD(h, 1u), HELD(h, 2u), HELD(h, 3u), HELD(h, 4u));
 }
 
 // The rays of a vector at work.
@@ -156,13 +137,13 @@ void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
     return;
   }
   for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
-    test_corners(load_corners(triangle), triangle, enters, w);
+    test_corners(load_triangle_together(triangle), triangle, enters, w);
   put_found(w);
   bound_vector(v, w.best.t);
 }
 
 void test_leaf(uint leaf, uint place) {
-  Boxes boxes = load_boxes(place / WIDE);
+  Boxes boxes = load_boxes_together(place / WIDE);
   vec3 lo, hi;
   child_box(boxes, place % WIDE, lo, hi);
   uint todo = VECTORS > LANES ? (1u << vectors) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));

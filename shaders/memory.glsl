@@ -16,6 +16,7 @@ TrianglePairs triangle_pairs(uint triangle) { return TrianglePairs(pack64(frame.
 NodePairs node_pairs(uint node) { return NodePairs(pack64(frame.nodes_at) + uint64_t(node * (4u * NODE_WORDS))); }
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer OneUint { uint v; };
+uint node_word(uint node, uint k) { return OneUint(pack64(frame.nodes_at) + uint64_t(4u * (node * NODE_WORDS + k))).v; }
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer OneVec2 { vec2 v; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer OneVec3 { vec3 v; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer OneVec4 { vec4 v; };

@@ -27,12 +27,13 @@ layout(push_constant) uniform Push {
 } push;
 
 #include "bundle_rays.glsl"
+#include "visit_together.glsl"
 
 Visit visit;  // the same in all lanes
 
 // Children that some ray of the bundle may enter, a bit each.
 uint entered_children(Beam beam, Cone cone, uint node) {
-  Boxes boxes = load_boxes(node);
+  Boxes boxes = load_boxes_together(node);
   uint entered = 0u;
   for (uint base = 0u; base < WIDE; base += LANES) {
     uint c = base + lane;
@@ -52,13 +53,13 @@ void walk(Beam beam, Cone cone) {
     while (current != CHILD_EMPTY && waiting_has_room()) {
       while (is_node(current)) {
         if (++effort > push.most_effort) return;
-        visit_children(visit, current, entered_children(beam, cone, current) & 255u);
-        current = next_child(visit, place);
+        visit_together(visit, current, entered_children(beam, cone, current) & 255u);
+        current = next_together(visit, place);
       }
       while (!is_node(current) && current != CHILD_EMPTY && waiting_has_room()) {
         test_leaf(current, place);
         beam.farthest = farthest_hit();
-        current = next_child(visit, place);
+        current = next_together(visit, place);
         if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;  // every shadow ray is blocked
       }
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane.
+// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or first as packets.
 #define COMPUTE
 #include "common.glsl"
+#extension GL_EXT_control_flow_attributes : require
 #include "rays.glsl"
 #include "scene.glsl"
 #include "candidate.glsl"
@@ -26,17 +27,22 @@ void main() {
     if (global_group() >= counters[COUNT_LOOSE]) return;
     i = work[global_group()] * BUNDLE + gl_LocalInvocationID.x;
   }
+  uint last = counters[COUNT_RAYS + push.kind];
+  bool there = true;
   if (push.count != 0u) {
-    if (i >= push.count) return;
+    there = i < push.count;
     i += push.first;
   }
-  if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = load_slot(push.order, i);
+  // A packet's lanes all stay: one without a ray finds nothing.
+  there = there && i < last;
+  if (TOGETHER ? !any_lane(there) : !there) return;
+  uint slot = load_slot(push.order, there ? i : last - 1u);
   Ray ray = load_ray(push.rays, slot);
-  Nearest best = Nearest(ray.tmax, NO_INDEX);
+  Nearest best = Nearest(there ? ray.tmax : -INFINITY, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   Tests tests = Tests(0u, 0u);
   trace_single(ray, best, shade, tests);
+  if (!there) return;
   if (ANY_HIT)
     store_shade(push.hits, slot, shade);
   else

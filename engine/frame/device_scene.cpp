@@ -51,6 +51,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderS
   triangle_work_ = Buffer(device, "moved triangles", triangle_blocks * 8, Kind::upload);
   vertex_work_ = Buffer(device, "moved vertices", vertex_blocks * 8, Kind::upload);
   boxes_.resize(layout_.instances.size());
+  to_world_.resize(layout_.instances.size(), glm::dmat4(1));
 
   for (const auto index : scene.order) light_count_ += scene.nodes[index].light != none ? 1 : 0;
   light_count_ = std::max(light_count_, 1U);

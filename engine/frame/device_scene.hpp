@@ -64,7 +64,8 @@ class DeviceScene {
   Buffer triangles_, instances_, lights_, nodes_, dynamic_;
   Buffer deforms_, joints_, morphs_, matrices_, weights_;
   Buffer triangle_work_, vertex_work_, refit_work_, top_staging_;
-  std::vector<Box> boxes_;  // an instance: relative to the origin, near enough to build the top level
+  std::vector<Box> boxes_;            // an instance: relative to the origin, near enough to build the top level
+  std::vector<glm::dmat4> to_world_;  // an instance: its mesh relative to the origin; not of skinned ones
   std::vector<glm::vec3> light_positions_;
   glm::dvec3 origin_{0};
   float box_pad_ = 0;

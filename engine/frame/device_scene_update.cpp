@@ -28,18 +28,6 @@ glm::dmat3 cofactors(const glm::dmat4& m) {
   return {glm::cross(b, c), glm::cross(c, a), glm::cross(a, b)};
 }
 
-Box transformed(const Box& box, const glm::dmat4& m) {
-  Box result;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                       corner & 4 ? box.hi.z : box.lo.z, 1);
-    const glm::vec3 q(glm::dvec3(m * p));
-    result.lo = glm::min(result.lo, q);
-    result.hi = glm::max(result.hi, q);
-  }
-  return result;
-}
-
 void merge(Box& into, const Box& box) {
   into.lo = glm::min(into.lo, box.lo);
   into.hi = glm::max(into.hi, box.hi);
@@ -76,6 +64,7 @@ void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
       instance.normal1 = glm::vec3(c[0].y, c[1].y, c[2].y);
       instance.normal2 = glm::vec3(c[0].z, c[1].z, c[2].z);
       boxes_[i] = transformed(layout_.mesh_boxes[source.mesh], m);
+      to_world_[i] = m;
     }
     if (store(placed[i], instance)) moved[i] = true;
   }
@@ -160,7 +149,13 @@ void DeviceScene::choose_pad(const CameraView& camera) {
 void DeviceScene::build_top_level(Recorder& recorder, std::vector<std::vector<std::uint32_t>>& heights) {
   HierarchyOptions options;
   options.leaf_size = 1;
-  auto tree = build_object_hierarchy(boxes_, options);
+  std::vector<Box> boxes;
+  boxes.reserve(layout_.parts.size());
+  for (const auto& part : layout_.parts) {
+    const InstanceSource& source = layout_.sources[part.instance];
+    boxes.push_back(source.deforms ? boxes_[part.instance] : transformed(part.box, to_world_[part.instance]));
+  }
+  auto tree = build_object_hierarchy(boxes, options);
   for (auto& node : tree.nodes) order_slots(node);
   const auto words = top_staging_.view<std::uint32_t>();
   std::fill(words.begin(), words.end(), 0U);
@@ -168,7 +163,7 @@ void DeviceScene::build_top_level(Recorder& recorder, std::vector<std::vector<st
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
     for (std::uint32_t c = 0; c < wide; ++c) {
       auto child = tree.nodes[n].child[c];
-      if (is_leaf(child)) child = layout_.sources[tree.order[leaf_first(child)]].root;
+      if (is_leaf(child)) child = layout_.parts[tree.order[leaf_first(child)]].child;
       words[n * gpu::NODE_WORDS + gpu::NODE_CHILD + c] = child;
     }
     const std::size_t height = above + tree.height[n];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How a scene lies in the device's buffers: instances in a fixed order, their triangles one after the other (the
 // triangle ids of ties, dumps and the visibility buffer), vertices once a mesh, one object hierarchy a mesh copied for
-// each instance, the top level in front of them.
+// each instance, the top level over parts of these in front of them.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame/features.hpp"
+#include "frame/scene_parts.hpp"
 #include "hierarchy/object_hierarchy.hpp"
 #include "scene/scene.hpp"
 #include "shared.h"
@@ -19,7 +20,6 @@ struct InstanceSource {
   std::uint32_t node = 0, mesh = 0;
   glm::dmat4 within_node{1};  // EXT_mesh_gpu_instancing, and the mesh's centre
   bool deforms = false;       // skinned or morphed: its vertices are made on the device
-  std::uint32_t root = 0;     // its node in the object hierarchy
 };
 
 struct SceneLayout {
@@ -37,10 +37,11 @@ struct SceneLayout {
   std::uint32_t dynamic_vertices = 0, skin_matrices = 0, morph_weights = 0;
   std::uint64_t triangles = 0;
   std::vector<std::uint32_t> node_children;  // WIDE words a node; the first `top_nodes` are the top level's
-  std::vector<std::vector<std::uint32_t>> refit_by_height;  // of all instances' nodes
+  std::vector<std::vector<std::uint32_t>> refit_by_height;  // of the instances' nodes that a part holds
   std::vector<std::uint32_t> node_instance;                 // a node (past the top level): its instance
   std::uint32_t top_nodes = 1;
-  std::vector<Box> mesh_boxes;  // a mesh: object space, rest pose
+  std::vector<ScenePart> parts;  // what the top level is built over; children numbered as in node_children
+  std::vector<Box> mesh_boxes;   // a mesh: object space, rest pose
 };
 
 /// Throws Error{limit} where the scene does not fit the device's buffers.

@@ -9,6 +9,10 @@ SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
     constants.push_back({8, loose});
+    if (loose && c.device.limits().cpu) {
+      constants.push_back({10, c.device.limits().subgroup});
+      constants.push_back({13, true});
+    }
     return Kernel(c.device, "traverse_single", constants);
   };
   nearest = make(false);

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: MIT
 sheaf_test(plan_test sheaf_core)
+sheaf_test(scene_parts_test sheaf_core)
