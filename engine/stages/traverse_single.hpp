@@ -7,8 +7,8 @@
 
 namespace sheaf {
 
-/// Kernel variants of the single-ray walk, nearest and any hit. `loose`: those that `hybrid` uses for the rays of its loose
-/// bundles, on a CPU device as packets of a subgroup (packet.glsl).
+/// Kernel variants of the single-ray walk, nearest and any hit. `loose`: those that `hybrid` uses for the rays of its
+/// loose bundles, on a CPU device as packets of a subgroup (packet.glsl).
 struct SingleKernels {
   SingleKernels() = default;
   SingleKernels(const TraceContext& context, bool loose);
