@@ -16,6 +16,7 @@ struct BinaryNode {
   std::uint32_t first, count;  // primitives below, consecutive in `order`
   std::uint32_t left;          // the right child follows it; 0: a leaf (the root is nobody's child)
   std::uint32_t height;        // edges down to the deepest leaf
+  std::uint32_t shares = 0;    // how its children share what roots a wide node has left (object_hierarchy.cpp)
   [[nodiscard]] bool leaf() const { return left == 0; }
 };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Second step: the binary tree is folded to eight children a node by opening, again and again, the child with the
-// largest surface, which is the one a ray most likely enters. Children keep the binary tree's order, low side first,
-// so the primitives below any node stay consecutive and neighbours in space stay neighbours in `order`.
+// Second step: the binary tree is folded to eight children a node so that the surfaces of all nodes have the least sum,
+// which is how many of them a ray enters (Ylitie, Karras, Laine, HPG 2017, section 3.1: by dynamic programming).
+// Children keep the binary tree's order, low side first, so the primitives below any node stay consecutive and
+// neighbours in space stay neighbours in `order`.
 #include "hierarchy/object_hierarchy.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "core/error.hpp"
@@ -56,7 +58,8 @@ struct Fold {
   }
 };
 
-Fold fold(const BinaryNode* tree, std::uint32_t root, std::uint32_t levels_left) {
+// Opened again and again: first what is too high, then the child with the largest surface.
+Fold fold_within(const BinaryNode* tree, std::uint32_t root, std::uint32_t levels_left) {
   Fold result{tree, {root}};
   const std::uint32_t allowed = binary_levels * (levels_left - 1);
   for (std::uint32_t place; (place = result.largest(allowed)) != wide;) result.open(place);
@@ -65,6 +68,65 @@ Fold fold(const BinaryNode* tree, std::uint32_t root, std::uint32_t levels_left)
     if (place == wide) break;
     result.open(place);
   }
+  return result;
+}
+
+// A forest over a binary node's primitives has roots that become children of one wide node. For 2 to 8 roots: how many
+// the left side gets at the best, three bits each; 0 where no better than with one root less. A forest of one root is
+// the node itself.
+[[nodiscard]] std::uint32_t left_share(const BinaryNode& node, std::uint32_t roots) {
+  return (node.shares >> (3 * (roots - 2))) & 7U;
+}
+
+using Costs = std::array<float, wide>;  // of 1 to 8 roots at most: the surfaces of all wide nodes below, roots included
+
+Costs share_out(BinaryNode* tree, std::uint32_t at) {
+  BinaryNode& node = tree[at];
+  if (node.leaf()) return {};
+  const Costs left = share_out(tree, node.left), right = share_out(tree, node.left + 1);
+  Costs shared{};
+  std::array<std::uint32_t, wide> share{};
+  for (std::uint32_t roots = 2; roots <= wide; ++roots) {
+    float& best = shared[roots - 1];
+    best = std::numeric_limits<float>::infinity();
+    for (std::uint32_t k = 1; k < roots; ++k) {
+      const float cost = left[k - 1] + right[roots - k - 1];
+      if (!(cost < best) && k > 1) continue;
+      best = cost;
+      share[roots - 1] = k;
+    }
+  }
+  shared[0] = half_area(node.bounds) + shared[wide - 1];
+  node.shares = share[wide - 1] << (3 * (wide - 2));  // as a wide node itself it always has eight to give
+  for (std::uint32_t roots = 2; roots < wide; ++roots) {
+    if (shared[roots - 1] < shared[roots - 2])
+      node.shares |= share[roots - 1] << (3 * (roots - 2));
+    else
+      shared[roots - 1] = shared[roots - 2];
+  }
+  shared[wide - 1] = std::min(shared[wide - 1], shared[wide - 2]);
+  return shared;
+}
+
+void collect_roots(const BinaryNode* tree, std::uint32_t at, std::uint32_t roots, Fold& into) {
+  const BinaryNode& node = tree[at];
+  while (roots > 1 && !node.leaf() && left_share(node, roots) == 0) --roots;
+  if (roots == 1 || node.leaf()) {
+    into.child[into.count++] = at;
+    return;
+  }
+  const std::uint32_t left = left_share(node, roots);
+  collect_roots(tree, node.left, left, into);
+  collect_roots(tree, node.left + 1, roots - left, into);
+}
+
+Fold fold(const BinaryNode* tree, std::uint32_t root, std::uint32_t levels_left) {
+  Fold result{tree};
+  result.count = 0;
+  collect_roots(tree, root, wide, result);
+  const std::uint32_t allowed = binary_levels * (levels_left - 1);
+  for (std::uint32_t i = 0; i < result.count; ++i)
+    if (tree[result.child[i]].height > allowed) return fold_within(tree, root, levels_left);
   return result;
 }
 
@@ -122,6 +184,7 @@ ObjectHierarchy build_object_hierarchy(std::span<const Box> boxes, const Hierarc
   BinaryHierarchy binary = build_binary_hierarchy(boxes, options, binary_levels * max_wide_levels);
   result.order = std::move(binary.order);
   result.nodes.reserve(boxes.size() / 8 + 1);
+  share_out(binary.nodes.get(), 0);
   collapse(binary.nodes.get(), result);
   measure_heights(result);
   return result;
