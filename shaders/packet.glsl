@@ -54,23 +54,21 @@ void test_triangle(Corners corners, uint triangle, bool enters, Ray ray, Shear s
 
 // Leaves of the node at work: for all rays one after the other, or each ray its own, which costs about 1.7 times as much a triangle.
 void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, inout Shade shade, inout Tests tests) {
-  float most = max_lanes(float(bitCount(own)));
-  if (1.7 * most >= float(bitCount(leaves))) {
-    for (; leaves != 0u; leaves &= leaves - 1u) {
-      uint leaf = child_together(lowest_bit(leaves));
-      for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
-        test_triangle(load_triangle_together(triangle), triangle, true, ray, s, best, shade, tests);
-    }
-    return;
-  }
-  while (any_lane(own != 0u)) {
-    bool has = own != 0u;
-    uint leaf = child_together(has ? lowest_bit(own) : 0u);
-    own &= own - (has ? 1u : 0u);
+  bool apart = 1.7 * max_lanes(float(bitCount(own))) < float(bitCount(leaves));
+  uint todo = apart ? own : leaves;
+  while (any_lane(todo != 0u)) {
+    bool has = todo != 0u;
+    uint leaf = child_together(has ? lowest_bit(todo) : 0u);
+    todo &= todo - (has ? 1u : 0u);
     uint triangle = leaf_first(leaf), last = has ? triangle + leaf_count(leaf) : triangle;
     while (any_lane(triangle < last)) {
       bool there = triangle < last;
-      test_triangle(load_triangle(there ? triangle : 0u), triangle, there, ray, s, best, shade, tests);
+      Corners corners;
+      if (apart)
+        corners = load_triangle(there ? triangle : 0u);
+      else
+        corners = load_triangle_together(triangle);
+      test_triangle(corners, triangle, there, ray, s, best, shade, tests);
       ++triangle;
     }
   }

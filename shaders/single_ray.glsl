@@ -60,14 +60,17 @@ void walk_on(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade sha
   }
 }
 
-layout(constant_id = 13) const bool TOGETHER = false;  // first as packets
-layout(constant_id = 10) const uint LANES = 8;          // of a subgroup, for packets
+#ifdef PACKETS  // not a constant: what is never run would still be read and inlined at each start
+layout(constant_id = 10) const uint LANES = 8;  // of a subgroup
 #include "packet.glsl"
+#endif
 
 void trace_single(Ray ray, inout Nearest best, inout Shade shade, inout Tests tests) {
   Shear s = make_shear(ray.origin, ray.direction);
   Walk w = Walk(0u, Visit(0u, 0u, octant_of(ray.direction)));
-  if (TOGETHER) walk_packet(ray, s, w, best, shade, tests);
+#ifdef PACKETS
+  walk_packet(ray, s, w, best, shade, tests);
+#endif
   Pending pending = NOTHING_PENDING;
   if (!asks_materials()) {
     walk_on(ray, s, w, best, shade, pending, tests);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or first as packets.
+// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or (PACKETS)
+// first by the packet.
 #define COMPUTE
 #include "common.glsl"
 #extension GL_EXT_control_flow_attributes : require
@@ -33,9 +34,12 @@ void main() {
     there = i < push.count;
     i += push.first;
   }
-  // A packet's lanes all stay: one without a ray finds nothing.
   there = there && i < last;
-  if (TOGETHER ? !any_lane(there) : !there) return;
+#ifdef PACKETS  // whose lanes all stay: one without a ray finds nothing
+  if (!any_lane(there)) return;
+#else
+  if (!there) return;
+#endif
   uint slot = load_slot(push.order, there ? i : last - 1u);
   Ray ray = load_ray(push.rays, slot);
   Nearest best = Nearest(there ? ray.tmax : -INFINITY, NO_INDEX);

@@ -8,6 +8,7 @@ foreach(stem animate_vertices animate_triangles objects_refit objects_spheres ge
              classify_candidates classify_cuts dump_triangles)
   sheaf_shader(${stem} ${stem}.comp)
 endforeach()
+sheaf_shader(traverse_packets traverse_single.comp PACKETS)
 sheaf_shader(raster_vert raster.vert)
 sheaf_shader(raster_frag raster.frag)
 

@@ -176,9 +176,9 @@ std::vector<InstanceSource> list_instances(const Scene& scene) {
   return sources;
 }
 
-// The top level is built anew whenever something moves: a quarter of a millisecond for so many parts. More are no
-// better: nodes that a shadow ray enters in Sponza's atrium, of whole instances and of 512, 1024, 2048, 4096, 8192,
-// 16384 parts: 31; 15.0, 14.5, 15.1, 15.3, 14.7, 17.0.
+// The top level is built anew whenever something moves: two microseconds a part. More are no better: nodes that a
+// shadow ray enters in Sponza's atrium, of whole instances and of 512, 1024, 2048, 4096, 8192, 16384 parts:
+// 31; 15.0, 14.5, 15.1, 15.3, 14.7, 17.0.
 constexpr std::size_t most_parts = std::size_t{1} << 10U;
 
 // Of all instances; makes room for the top level. What is above an instance's parts is returned.

@@ -62,6 +62,26 @@ class Neighbours {
   ObjectHierarchy tree_;
 };
 
+// Half the surface of its nodes.
+double top_level_area(std::span<const PartedInstance> instances, std::span<const ScenePart> parts) {
+  std::vector<Box> boxes;
+  boxes.reserve(parts.size());
+  for (const auto& part : parts) boxes.push_back(transformed(part.box, instances[part.instance].to_world));
+  HierarchyOptions options;
+  options.leaf_size = 1;
+  const ObjectHierarchy tree = build_object_hierarchy(boxes, options);
+  Box whole;
+  double area = 0;
+  for (const auto& node : tree.nodes)
+    for (std::uint32_t c = 0; c < wide; ++c)
+      if (is_node(node.child[c])) area += half_area(node.bounds[c]);
+  for (const auto& box : boxes) {
+    whole.lo = glm::min(whole.lo, box.lo);
+    whole.hi = glm::max(whole.hi, box.hi);
+  }
+  return boxes.empty() ? 0 : area + half_area(whole);
+}
+
 }  // namespace
 
 Box transformed(const Box& box, const glm::dmat4& m) {
@@ -76,7 +96,7 @@ Box transformed(const Box& box, const glm::dmat4& m) {
   return result;
 }
 
-SceneParts choose_parts(std::span<const PartedInstance> instances, std::size_t most) {
+SceneParts open_parts(std::span<const PartedInstance> instances, std::size_t most) {
   SceneParts result;
   result.above.resize(instances.size());
   std::priority_queue<Open> open;
@@ -92,6 +112,7 @@ SceneParts choose_parts(std::span<const PartedInstance> instances, std::size_t m
   while (!open.empty() && open.size() + result.parts.size() + wide - 1 <= most) {
     const Open at = open.top();
     open.pop();
+    result.area -= at.area;
     result.above[at.instance].push_back(at.child);
     const WideNode& node = instances[at.instance].tree->nodes[at.child];
     for (std::uint32_t c = 0; c < wide; ++c)
@@ -102,7 +123,17 @@ SceneParts choose_parts(std::span<const PartedInstance> instances, std::size_t m
     return std::tuple(a.instance, a.child) < std::tuple(b.instance, b.child);
   });
   for (auto& nodes : result.above) std::sort(nodes.begin(), nodes.end());
+  result.area += top_level_area(instances, result.parts);
   return result;
+}
+
+SceneParts choose_parts(std::span<const PartedInstance> instances, std::size_t most) {
+  SceneParts best = open_parts(instances, 0);
+  for (const std::size_t share : {16U, 4U, 1U}) {
+    SceneParts parted = open_parts(instances, most / share);
+    if (parted.area < best.area) best = std::move(parted);
+  }
+  return best;
 }
 
 }  // namespace sheaf

@@ -9,11 +9,9 @@ SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
     constants.push_back({8, loose});
-    if (loose && c.device.limits().cpu) {
-      constants.push_back({10, c.device.limits().subgroup});
-      constants.push_back({13, true});
-    }
-    return Kernel(c.device, "traverse_single", constants);
+    const bool packets = loose && c.device.limits().cpu;
+    if (packets) constants.push_back({10, c.device.limits().subgroup});
+    return Kernel(c.device, packets ? "traverse_packets" : "traverse_single", constants);
   };
   nearest = make(false);
   if (c.plan.shadows) any = make(true);

@@ -68,7 +68,7 @@ TEST(SceneParts, OverlappingInstancesAreOpenedUpToTheMost) {
   const Built a = strewn(3000, 1, 1), b = strewn(2000, 1, 2);
   const std::array instances{PartedInstance{&a.tree, a.box}, PartedInstance{&b.tree, b.box}};
   for (const std::size_t most : {0U, 2U, 8U, 9U, 100U, 1000U, 100000U}) {
-    const SceneParts chosen = choose_parts(instances, most);
+    const SceneParts chosen = open_parts(instances, most);
     EXPECT_LE(chosen.parts.size(), std::max<std::size_t>(most, 2));
     EXPECT_GE(chosen.parts.size() + wide, std::min<std::size_t>(most, 500));
     expect_whole(instances, chosen);
@@ -79,20 +79,39 @@ TEST(SceneParts, WhatNothingElseReachesStaysWhole) {
   const Built a = strewn(3000, 1, 1), b = strewn(2000, 1, 2);
   const auto aside = glm::translate(glm::dmat4(1), glm::dvec3(5, 0, 0));
   const std::array apart{PartedInstance{&a.tree, a.box}, PartedInstance{&b.tree, b.box, aside}};
-  EXPECT_EQ(choose_parts(apart, 1000).parts.size(), 2U);
+  EXPECT_EQ(open_parts(apart, 1000).parts.size(), 2U);
   const std::array alone{PartedInstance{&a.tree, a.box}};
-  EXPECT_EQ(choose_parts(alone, 1000).parts.size(), 1U);
-  EXPECT_TRUE(choose_parts({}, 1000).parts.empty());
+  EXPECT_EQ(open_parts(alone, 1000).parts.size(), 1U);
+  EXPECT_TRUE(open_parts({}, 1000).parts.empty());
 }
 
 TEST(SceneParts, DeformingInstancesStayWhole) {
   const Built a = strewn(3000, 1, 1), b = strewn(2000, 1, 2);
   const std::array instances{PartedInstance{&a.tree, a.box}, PartedInstance{&b.tree, b.box, glm::dmat4(1), true}};
-  const SceneParts chosen = choose_parts(instances, 1000);
+  const SceneParts chosen = open_parts(instances, 1000);
   EXPECT_TRUE(chosen.above[1].empty());
   EXPECT_EQ(std::count_if(chosen.parts.begin(), chosen.parts.end(), [](const auto& p) { return p.instance == 1; }), 1);
   EXPECT_GT(chosen.parts.size(), 500U);
   expect_whole(instances, chosen);
+}
+
+TEST(SceneParts, TheLeastSurfaceIsChosen) {
+  const Built a = strewn(3000, 1, 1), b = strewn(20, 1, 2);
+  bool whole = false, parted = false;
+  for (const double offset : {0.0, 0.5, 0.9, 0.99}) {
+    const auto beside = glm::translate(glm::dmat4(1), glm::dvec3(offset, 0, 0));
+    const std::array instances{PartedInstance{&a.tree, a.box}, PartedInstance{&b.tree, b.box, beside},
+                               PartedInstance{&b.tree, b.box, beside}};
+    const SceneParts chosen = choose_parts(instances, 1024);
+    expect_whole(instances, chosen);
+    for (const std::size_t most : {0U, 64U, 256U, 1024U}) EXPECT_LE(chosen.area, open_parts(instances, most).area);
+    (chosen.parts.size() == 3 ? whole : parted) = true;
+  }
+  EXPECT_TRUE(parted);
+  const auto aside = glm::translate(glm::dmat4(1), glm::dvec3(0.9999, 0, 0));
+  const std::array few{PartedInstance{&b.tree, b.box}, PartedInstance{&b.tree, b.box, aside}};
+  whole = whole || choose_parts(few, 1024).parts.size() == 2;
+  EXPECT_TRUE(whole);
 }
 
 TEST(SceneParts, HugeAndFlatBoxesEnd) {
@@ -100,7 +119,7 @@ TEST(SceneParts, HugeAndFlatBoxesEnd) {
   a.box = {glm::vec3(-3e38F), glm::vec3(3e38F)};
   b.box = {glm::vec3(0.5F), glm::vec3(0.5F)};
   const std::array instances{PartedInstance{&a.tree, a.box}, PartedInstance{&b.tree, b.box}};
-  expect_whole(instances, choose_parts(instances, 50));
+  expect_whole(instances, open_parts(instances, 50));
 }
 
 }  // namespace
