@@ -5,7 +5,7 @@ foreach(stem animate_vertices animate_triangles objects_refit objects_spheres ge
              rays_hierarchy_bundles traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
              resolve layers objects_boxes traverse_query packets_keys packets_frustums walk_begin pairs_open pairs_ranges
              intersect_packets classify_bounds classify_keys classify_begin classify_frustums classify_stops
-             classify_candidates classify_cuts dump_triangles)
+             classify_candidates classify_cuts dump_triangles raster_spans)
   sheaf_shader(${stem} ${stem}.comp)
 endforeach()
 sheaf_shader(traverse_packets traverse_single.comp PACKETS)

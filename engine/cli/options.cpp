@@ -102,7 +102,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--sort", o.sort, "auto, on or off")->capture_default_str();
   command
       .add_option("--primary", o.primary,
-                  "raster, trace or auto: raster, but where a pixel has more than two triangles")
+                  "raster, trace or auto: raster, but where a pixel has more than eight triangles")
       ->capture_default_str();
   command
       .add_option("--instances", o.instances,

@@ -11,8 +11,8 @@ namespace sheaf {
 namespace {
 
 // A rasteriser looks at every triangle, a ray at the logarithm. Wall time of whole frames of a city of 1 M triangles on
-// a CPU device, drawn against traced: of 1.1 triangles a pixel 0.71, of 2 1.02, of 4.4 1.05, of 9 1.7.
-constexpr std::uint64_t most_triangles_a_pixel = 2;
+// a CPU device, drawn against traced: of 1.1 triangles a pixel 0.77, of 4.4 0.87, of 8 0.96, of 17 1.14, of 69 1.86.
+constexpr std::uint64_t most_triangles_a_pixel = 8;
 
 // Least roughness a material can show anywhere: its factor times the darkest green of its texture.
 float least_roughness(const Scene& scene, const Material& material) {
@@ -132,7 +132,7 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   if (!plan.raster)
     leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels"
                     : settings.primary == PrimaryMethod::trace ? "--primary trace"
-                                                               : "more than two triangles a pixel: rays are cheaper");
+                                                               : "more than eight triangles a pixel: rays are cheaper");
   if (!features.textured) leave("texture filter", "no textures");
   plan.posed = poses_triangles(features, settings);
   if (plan.posed) leave("triangles in world space", "most are instances, posed when read; see --instances");

@@ -85,7 +85,7 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   m.args = Buffer(device, "dispatch arguments", gpu::ARGS_COUNT * 12);
   m.block_sums = Buffer(device, "block sums", (std::uint64_t{m.capacity} / gpu::SCAN_BLOCK + 2) * 4 * gpu::RADIX);
   m.accumulation = Buffer(device, "accumulation", pixels * 32, Kind::device, by_address);
-  if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8);
+  if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8, Kind::device, by_address);
   m.output = Buffer(device, "output", pixels * 16, Kind::device, by_address);
   m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback, by_address);
   if (plan.adaptive) {

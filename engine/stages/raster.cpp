@@ -20,8 +20,16 @@ std::vector<std::uint32_t> roles_of_both() {
 
 }  // namespace
 
-Raster::Raster(const Device& device, const Plan& plan, const Features& features)
-    : device_(device), layout_(device, roles_of_both(), both_stages) {
+Raster::Raster(const Device& device, const Plan& plan, const Features& features) : device_(device) {
+  if (RasterSpans::pays(device))
+    spans_ = RasterSpans(device, plan, features);
+  else
+    make_pipeline(plan, features);
+}
+
+void Raster::make_pipeline(const Plan& plan, const Features& features) {
+  const Device& device = device_;
+  layout_ = PipelineLayout(device, roles_of_both(), both_stages);
   // No attachments: what a fragment finds goes to the visibility buffer by a 64-bit minimum.
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics);
   pass_ = vk::raii::RenderPass(device.logical(), vk::RenderPassCreateInfo({}, {}, subpass));
@@ -61,12 +69,16 @@ void Raster::record(Recorder& recorder, const DeviceScene& scene, const RayMemor
   recorder.stage("raster");
   recorder.fill(memory.visibility, 0xFFFFFFFFU, 0, std::uint64_t{tile.pixels()} * 8);
   if (scene.triangles() == 0) return;
+  recorder.bind(ROLE_VISIBILITY, memory.visibility);
+  if (spans_) {
+    spans_.record(recorder, memory.visibility, scene.triangles());
+    return;
+  }
   const auto& commands = recorder.commands();
   const vk::Rect2D area({0, 0}, {tile.width, tile.height});
   commands.beginRenderPass(vk::RenderPassBeginInfo(*pass_, *framebuffer(tile.width, tile.height), area),
                            vk::SubpassContents::eInline);
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
-  recorder.bind(ROLE_VISIBILITY, memory.visibility);
   const std::uint32_t unused = 0;
   recorder.bind_roles(layout_, vk::PipelineBindPoint::eGraphics, &unused, sizeof(unused), both_stages);
   // The viewport is the whole image's, moved so that the tile's first pixel is at 0.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Raster (R 4.1): the graphics pipeline finds the first hits of a tile into a visibility buffer of (t, triangle).
+// Raster (R 4.1): the graphics pipeline finds the first hits of a tile into a visibility buffer of (t, triangle); on
+// CPU devices a kernel does (raster_spans).
 #pragma once
 
 #include "frame/device_scene.hpp"
 #include "frame/ray_lists.hpp"
+#include "stages/raster_spans.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {
@@ -20,9 +22,11 @@ class Raster {
               std::uint32_t width, std::uint32_t height);
 
  private:
+  void make_pipeline(const Plan& plan, const Features& features);
   const vk::raii::Framebuffer& framebuffer(std::uint32_t width, std::uint32_t height);
 
   const Device& device_;
+  RasterSpans spans_;
   PipelineLayout layout_;
   vk::raii::RenderPass pass_{nullptr};
   vk::raii::Pipeline pipeline_{nullptr};
