@@ -24,34 +24,14 @@ layout(constant_id = 5) const bool VOLUMES = true;
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
   uint last;        // 1: no further generation
+  uint direct;      // 1: the parents are the camera's rays, and were not written: raster knows what they hit
   PUSH_LIST
   uvec2 shadow_rays;
   uvec2 reflection_rays;
   uvec2 refraction_rays;
 } push;
 
-struct Parent {
-  Ray ray;
-  vec3 weight;
-  float coverage;
-  uint pixel;
-  uint medium;
-  float cone_width, cone_spread;
-};
-
-Parent load_parent(uint slot) {
-  Parent p;
-  p.ray = load_ray(push.rays, slot);
-  RayLoad carried = load_ray_load(push.rays, slot);
-  p.weight = carried.weight;
-  p.coverage = carried.coverage;
-  p.medium = carried.medium;
-  p.pixel = load_ray_pixel(push.rays, slot);
-  vec2 cone = TEXTURED ? load_ray_cone(push.rays, slot) : vec2(0);
-  p.cone_width = cone.x;
-  p.cone_spread = cone.y;
-  return p;
-}
+#include "parents.glsl"
 
 float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
 
@@ -270,9 +250,8 @@ void main() {
   if (i >= counters[COUNT_RAYS + push.kind]) return;
   uint parents = counters[COUNT_PARENTS];
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
-  uint from = push.kind == KIND_PRIMARY ? i : load_slot(push.order, i);
-  uvec2 hit = unpack32(hit_at(push.hits, from).v);
-  Parent p = load_parent(from);
+  uvec2 hit;
+  Parent p = RASTER && push.direct != 0u ? camera_parent(i, hit) : load_parent(i, hit);
   count_tests(push.kind, STAT_HITS, hit.x != NO_INDEX ? 1u : 0u);
   if (hit.x != NO_INDEX) {
     shade_hit(slot, parents, hit.x, uintBitsToFloat(hit.y), p);

@@ -8,10 +8,18 @@
 #include "rays.glsl"
 #include "lists.glsl"
 #include "args.glsl"
-layout(push_constant) uniform Push { uint primary; } push;
+BUFFER(ROLE_STATS, coherent, uint64_t, stats);
+layout(push_constant) uniform Push {
+  uint primary;
+  uint direct;  // 1: the camera's rays are not written before
+} push;
 
 void main() {
   if (gl_LocalInvocationID.x != 0u) return;
+  if (push.direct != 0u) {
+    counters[COUNT_RAYS + KIND_PRIMARY] = frame.batch_rays;
+    stats[KIND_PRIMARY * STAT_FIELDS + STAT_RAYS] += uint64_t(frame.batch_rays);
+  }
   uint first = push.primary != 0u ? counters[COUNT_RAYS + KIND_PRIMARY] : counters[COUNT_RAYS + KIND_REFLECTION];
   uint second = push.primary != 0u ? 0u : counters[COUNT_RAYS + KIND_REFRACTION];
   uint parents = first + second;

@@ -8,7 +8,7 @@
 #include "rays.glsl"
 #include "camera.glsl"
 #include "lists.glsl"
-#include "curves.glsl"
+#include "camera_pixels.glsl"
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_VISIBILITY, readonly, uint64_t, visibility);
 BUFFER(ROLE_ACTIVE_PIXELS, readonly, uint, active_pixels);
@@ -17,18 +17,6 @@ layout(constant_id = 1) const bool RASTER = true;
 layout(constant_id = 2) const bool ADAPTIVE = false;
 layout(constant_id = 9) const bool TEXTURED = true;
 layout(push_constant) uniform Push { PUSH_LIST } push;
-
-// Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
-// them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
-uvec2 pixel_of(uint i) {
-  const uint SIDE = 8u;
-  uint strip = i / (SIDE * frame.tile_width), in_strip = i % (SIDE * frame.tile_width);
-  uint height = min(SIDE, frame.tile_height - SIDE * strip);
-  uint block = in_strip / (SIDE * height), in_block = in_strip % (SIDE * height);
-  uint width = min(SIDE, frame.tile_width - SIDE * block);
-  uvec2 p = width == SIDE && height == SIDE ? on_hilbert2(in_block, 3u) : uvec2(in_block % width, in_block / width);
-  return uvec2(SIDE * block, SIDE * strip) + p;
-}
 
 void main() {
   uint i = global_index();

@@ -232,6 +232,7 @@ void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, cons
   set_frame(request.camera, batch, tile);
   recorder_.fill(memory_.counters, 0);
   if (raster_) raster_->record(recorder_, *scene_, memory_, tile, settings_.width, settings_.height);
+  if (direct()) return;
   generate_.primary(recorder_, memory_, batch.rays);
   if (raster_) return;
   compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, batch.rays);
@@ -245,7 +246,7 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
   camera_hits(request, batch, tile);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
   if (layers_ && settings_.samples.most == 1) layers_->record(recorder_, memory_, tile.pixels());
-  generate_.secondary(recorder_, memory_, 0, true, settings_.depth == 0);
+  generate_.secondary(recorder_, memory_, {0, true, settings_.depth == 0, direct()});
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();
   for (std::uint32_t g = 1; g <= settings_.depth; ++g) {
@@ -253,7 +254,7 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
     const std::uint32_t from = (g - 1) % 2;
     if (plan_.reflections) trace(memory_.reflection[from], gpu::KIND_REFLECTION, g);
     if (plan_.refractions) trace(memory_.refraction[from], gpu::KIND_REFRACTION, g);
-    generate_.secondary(recorder_, memory_, from, false, g == settings_.depth);
+    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false});
     trace_shadows(g);
     if (g % generations_a_submit != 0 || g == settings_.depth) continue;
     recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);

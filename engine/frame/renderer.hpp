@@ -69,6 +69,8 @@ class Renderer {
   void render_layers(const FrameRequest& request, const Tile& tile);
   void begin_tile(const Tile& tile);
   void finish_tile(const Tile& tile);
+  /// Whether the camera's rays need not be written: what they hit lies in the visibility buffer, and nobody else asks.
+  [[nodiscard]] bool direct() const { return raster_ && !layers_ && dump_ == nullptr; }
   void camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile);
   [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);

@@ -11,10 +11,10 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
   primary_ = Kernel(device, "generate_primary", first);
   const SpecConstant one{0, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
-  const std::array constants{SpecConstant{1, plan.shadows},      SpecConstant{2, plan.reflections},
-                             SpecConstant{3, plan.refractions},  SpecConstant{4, plan.textured_normals},
-                             SpecConstant{5, features.volumes},  SpecConstant{6, counted},
-                             SpecConstant{9, features.textured}, SpecConstant{12, plan.posed}};
+  const std::array constants{
+      SpecConstant{1, plan.shadows},          SpecConstant{2, plan.reflections}, SpecConstant{3, plan.refractions},
+      SpecConstant{4, plan.textured_normals}, SpecConstant{5, features.volumes}, SpecConstant{6, counted},
+      SpecConstant{9, features.textured},     SpecConstant{12, plan.posed},      SpecConstant{13, plan.raster}};
   generate_ = Kernel(device, "generate", constants);
 }
 
@@ -30,18 +30,20 @@ void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_
   recorder.dispatch(primary_, unused, (rays + gpu::GROUP - 1) / gpu::GROUP);
 }
 
-void Generate::secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary,
-                         bool last) const {
+void Generate::secondary(Recorder& recorder, const RayMemory& memory, const Parents& parents) const {
   recorder.stage("generate");
-  const std::uint32_t primary = is_primary ? 1 : 0;
-  recorder.dispatch(begin_, primary, 1);
+  const bool is_primary = parents.primary;
+  const std::uint32_t from = parents.from, direct = parents.direct ? 1 : 0;
+  const struct { std::uint32_t primary, direct; } begin{is_primary ? 1U : 0U, direct};
+  recorder.dispatch(begin_, begin, 1);
+  if (parents.direct) recorder.bind(ROLE_VISIBILITY, memory.visibility);
   const std::uint32_t to = 1 - from;
   recorder.bind_list(LIST_SHADOW_RAYS, memory.shadow.rays);
   if (plan_.reflections) recorder.bind_list(LIST_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
   if (plan_.refractions) recorder.bind_list(LIST_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
   struct {
-    std::uint32_t kind, last;
-  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, last ? 1U : 0U};
+    std::uint32_t kind, last, direct;
+  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, parents.last ? 1U : 0U, direct};
   if (is_primary || plan_.reflections) {
     memory.reflection[is_primary ? 1 : from].bind(recorder);
     recorder.dispatch_indirect(generate_, push, gpu::ARGS_PARENTS);

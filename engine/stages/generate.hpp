@@ -13,8 +13,13 @@ class Generate {
 
   /// The camera's rays into memory.reflection[1].
   void primary(Recorder& recorder, const RayMemory& memory, std::uint32_t rays) const;
-  /// Shades the hits of the lists `from` (0 or 1; the camera's where `is_primary`) and makes the rays that follow.
-  void secondary(Recorder& recorder, const RayMemory& memory, std::uint32_t from, bool is_primary, bool last) const;
+  struct Parents {
+    std::uint32_t from;  // lists 0 or 1; unused where they are the camera's rays
+    bool primary, last;  // last: no rays but shadow rays follow
+    bool direct;         // the camera's rays were rasterised and not written: `primary` is left out
+  };
+  /// Shades the parents' hits and makes the rays that follow.
+  void secondary(Recorder& recorder, const RayMemory& memory, const Parents& parents) const;
 
  private:
   const Plan& plan_;
