@@ -78,7 +78,7 @@ Choice choose_strategy(const Device& device, const std::shared_ptr<DeviceScene>&
     contender.renderer = std::make_unique<Renderer>(device, scene, features, small, contender.strategy);
     contender.take_turn(first, bands);  // compiles and uploads
   }
-  const auto& [plain, bundled] = contenders;
+  const Contender &plain = contenders.front(), &bundled = contenders.back();
   const auto compare = [&](int turns) {
     for (auto& contender : contenders) contender.least_ms.clear();
     for (int turn = 0; turn < turns; ++turn)
