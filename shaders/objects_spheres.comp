@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounding spheres of the triangles that moved, and of whole instances (C: mesh spheres). Padded by PAD of the radius for its
-// own rounding and by twice box_pad, which covers what the edge functions may add to a triangle (triangle.glsl).
+// Bounding spheres of the triangles that moved, and of runs of them: whole instances (C: mesh spheres) and parts of these. Padded
+// by PAD of the radius for its own rounding and by twice box_pad, which covers what the edge functions may add to a triangle
+// (triangle.glsl).
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
 #include "memory.glsl"
 #include "ray_node.glsl"
-BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_SPHERES, coherent, vec4, spheres);
-BUFFER(ROLE_MESH_SPHERES, coherent, vec4, mesh_spheres);
+BUFFER(ROLE_RUNS, readonly, uvec2, runs);  // first triangle, how many
 layout(push_constant) uniform Push {
-  uint meshes;    // 0: triangles, one an invocation; 1: instances, one an invocation
+  uint runs;  // not 0: of so many runs, one an invocation, instead of the triangles
 } push;
 
 vec4 padded(vec3 centre, float radius) { return vec4(centre, radius * (1.0 + PAD) + 2.0 * frame.box_pad); }
@@ -38,15 +38,15 @@ vec4 triangle_sphere(vec3 a, vec3 b, vec3 c) {
 
 void main() {
   uint i = global_index();
-  if (push.meshes == 0u) {
+  if (push.runs == 0u) {
     if (i >= frame.triangles) return;
     Corners v = load_triangle(i);
     vec4 s = triangle_sphere(v.a, v.b, v.c);
     spheres[i] = padded(s.xyz, s.w);
     return;
   }
-  if (i >= frame.instances) return;
-  uint first = instances[i].first_triangle, last = first + instances[i].triangle_count;
+  if (i >= push.runs) return;
+  uint first = runs[i].x, last = first + runs[i].y;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint t = first; t < last; ++t) {
     Corners v = load_triangle(t);
@@ -59,5 +59,5 @@ void main() {
     Corners v = load_triangle(t);
     radius = max(radius, max(max(length(v.a - centre), length(v.b - centre)), length(v.c - centre)));
   }
-  mesh_spheres[i] = padded(centre, radius);
+  spheres[i] = padded(centre, radius);
 }

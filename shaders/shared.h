@@ -35,7 +35,7 @@ using mat3 = glm::mat3;
 #define ROLE_PAIRS_NEXT 33
 #define ROLE_SURVIVORS 34
 #define ROLE_SPHERES 35
-#define ROLE_MESH_SPHERES 36
+#define ROLE_RUNS 36
 #define ROLE_OPTICAL_DEPTH 37
 #define ROLE_VISIBILITY 38
 #define ROLE_LAYERS 39
@@ -167,6 +167,7 @@ SHEAF_CONST RADIX_BITS = 4u;
 SHEAF_CONST RADIX = 1u << RADIX_BITS;
 SHEAF_CONST BUNDLE = 64u;         // rays of a bundle: level 3 of the arity-4 hierarchy
 SHEAF_CONST ARITY = 4u;
+SHEAF_CONST PART_TRIANGLES = 4u;  // of an instance, that one sphere stands for
 SHEAF_CONST MAX_LEVELS = 16u;
 SHEAF_CONST OPTICAL_STEP = 4096u;  // steps of the fixed-point optical depth in one stop (factor 2): 2^-13 stops of rounding a crossing
 

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One level of the breadth-first traversal (R 4.4): candidates (node, object) are tested sphere-and-cone against sphere.
-// Candidates come from seeds (a node and a run of objects) or from the survivors of the level above, each opened into
-// its node's ARITY children. Survivors are marked; compaction follows.
+// Candidates come from seeds (a node and a run of objects) or from the survivors of the step before, each opened into
+// its node's ARITY children or its part's triangles. Survivors are marked; compaction follows.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -13,9 +13,10 @@
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_PAIRS, writeonly, uvec2, candidates);
 BUFFER(ROLE_SURVIVORS, writeonly, uint, survivors);
-BUFFER(ROLE_PAIRS_NEXT, readonly, uvec2, parents);     // survivors of the level above
+BUFFER(ROLE_PAIRS_NEXT, readonly, uvec2, parents);     // survivors of the step before
 BUFFER(ROLE_SKELETON, readonly, uvec4, seeds);         // node, first object, candidates before, unused
-BUFFER(ROLE_SPHERES, readonly, vec4, spheres);         // of triangles or of instances
+BUFFER(ROLE_SPHERES, readonly, vec4, spheres);         // of instances, of parts or of triangles
+BUFFER(ROLE_RUNS, readonly, uvec2, parts);             // first triangle, how many
 layout(push_constant) uniform Push {
   uint kind;
   uint level;        // of the nodes being tested; 0: rays
@@ -24,6 +25,7 @@ layout(push_constant) uniform Push {
   uint candidates;   // in this batch
   uint offset;       // first parent, or first candidate among the seeds
   uint seeds;        // not 0: so many seeds
+  uint opens_parts;  // 1: parents are opened into triangles, not into the nodes below
   PUSH_LIST
 } push;
 
@@ -51,13 +53,20 @@ void main() {
   uint i = global_index();
   if (i >= push.candidates) return;
   uvec2 pair;
+  bool exists;
   if (push.seeds != 0u) {
     pair = seeded(push.offset + i);
+    exists = true;
+  } else if (push.opens_parts != 0u) {
+    pair = parents[push.offset + i / PART_TRIANGLES];
+    uvec2 part = parts[pair.y];
+    exists = i % PART_TRIANGLES < part.y;
+    pair.y = part.x + i % PART_TRIANGLES;
   } else {
     pair = parents[push.offset + i / ARITY];
     pair.x = pair.x * ARITY + i % ARITY;
+    exists = pair.x < push.nodes;
   }
-  bool exists = pair.x < push.nodes;
   bool survives = false;
   if (exists) {
     vec4 s = spheres[pair.y];

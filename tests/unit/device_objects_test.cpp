@@ -134,9 +134,10 @@ TEST(DeviceSpheres, HoldTheirTrianglesAndLittleElse) {
   const Kernel kernel(device(), "objects_spheres");
   for (const auto& [name, triangles] : soups()) {
     OnDevice scene(triangles, {});
-    const Output<glm::vec4> spheres(triangles.size()), unused(1);
+    const Output<glm::vec4> spheres(triangles.size());
+    const Output<glm::uvec2> unused(1);
     scene.recorder().bind(ROLE_SPHERES, spheres.buffer());
-    scene.recorder().bind(ROLE_MESH_SPHERES, unused.buffer());
+    scene.recorder().bind(ROLE_RUNS, unused.buffer());
     scene.recorder().dispatch(kernel, 0U, blocks_of(triangles.size(), gpu::GROUP) + 1ULL);
     scene.recorder().submit_and_wait();
     const double pad = pad_of(triangles);
@@ -152,32 +153,28 @@ TEST(DeviceSpheres, HoldTheirTrianglesAndLittleElse) {
   }
 }
 
-TEST(DeviceSpheres, OfInstancesHoldAllTheirTriangles) {
+TEST(DeviceSpheres, OfRunsHoldAllTheirTriangles) {
   const Kernel kernel(device(), "objects_spheres");
   for (const auto& [name, triangles] : soups()) {
     Dice dice(4);
-    std::vector<gpu::Instance> instances;
-    for (std::uint32_t first = 0; first < triangles.size();) {
-      gpu::Instance instance{};
-      instance.first_triangle = first;
-      instance.triangle_count =
-          std::min<std::uint32_t>(1 + dice.below(100), static_cast<std::uint32_t>(triangles.size()) - first);
-      first += instance.triangle_count;
-      instances.push_back(instance);
-    }
-    OnDevice scene(triangles, instances);
-    const Output<glm::vec4> spheres(instances.size()), unused(1);
-    scene.recorder().bind(ROLE_SPHERES, unused.buffer());
-    scene.recorder().bind(ROLE_MESH_SPHERES, spheres.buffer());
-    scene.recorder().dispatch(kernel, 1U, blocks_of(instances.size(), gpu::GROUP));
+    std::vector<glm::uvec2> runs;  // first triangle, how many
+    const auto all = static_cast<std::uint32_t>(triangles.size());
+    for (std::uint32_t first = 0; first < all; first += runs.back().y)
+      runs.emplace_back(first, std::min(1 + dice.below(100), all - first));
+    OnDevice scene(triangles, {});
+    const Output<glm::vec4> spheres(runs.size());
+    const Buffer table(device(), "runs", runs.size() * sizeof(glm::uvec2), Buffer::Kind::upload);
+    std::ranges::copy(runs, table.view<glm::uvec2>().begin());
+    scene.recorder().bind(ROLE_SPHERES, spheres.buffer());
+    scene.recorder().bind(ROLE_RUNS, table);
+    scene.recorder().dispatch(kernel, static_cast<std::uint32_t>(runs.size()), blocks_of(runs.size(), gpu::GROUP));
     scene.recorder().submit_and_wait();
     const auto got = spheres.values();
-    for (std::size_t i = 0; i < instances.size(); ++i) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
       double reach = 0;
-      for (std::uint32_t t = 0; t < instances[i].triangle_count; ++t)
-        reach = std::max(reach, farthest(triangles[instances[i].first_triangle + t], got[i]));
-      ASSERT_LE(reach, got[i].w) << name << ", instance " << i;
-      ASSERT_LE(got[i].w, reach * 1.0001 + 4.0 * pad_of(triangles)) << name << ", instance " << i;
+      for (std::uint32_t t = 0; t < runs[i].y; ++t) reach = std::max(reach, farthest(triangles[runs[i].x + t], got[i]));
+      ASSERT_LE(reach, got[i].w) << name << ", run " << i;
+      ASSERT_LE(got[i].w, reach * 1.0001 + 4.0 * pad_of(triangles)) << name << ", run " << i;
     }
   }
 }
