@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "core/error.hpp"
@@ -44,7 +46,7 @@ class Job {
  private:
   [[nodiscard]] FrameRequest request_for(std::int64_t number) const;
   void render_all(const std::vector<std::int64_t>& numbers);
-  void render_frame(FrameRequest request);
+  void begin_writing();
   void write(RenderedFrame frame, const FrameRequest& request);
   void finish_writing();
   void save_stats(bool last);
@@ -63,6 +65,7 @@ class Job {
   std::unique_ptr<DumpWriter> dump_;
   RunStats stats_;
   Clock::time_point saved_ = Clock::now();
+  std::optional<std::pair<RenderedFrame, FrameRequest>> rendered_;  // not yet at being written
   std::future<void> writing_;  // the frame before: compressed and written while the next one renders
 };
 
@@ -115,29 +118,39 @@ FrameRequest Job::request_for(std::int64_t number) const {
   return request;
 }
 
-// While a frame renders, the next one is posed and the one before is compressed and written.
+// While a frame renders, the next one is posed and the one before is compressed and written. Neither begins before the
+// device has its work: on a CPU device all want the same cores, and whatever delays the submission leaves the others
+// idle.
 void Job::render_all(const std::vector<std::int64_t>& numbers) {
-  if (numbers.empty()) return;
-  FrameRequest request = request_for(numbers.front());
+  const auto pose = [&](std::size_t n) {
+    if (n == numbers.size()) return std::future<FrameRequest>{};
+    return std::async(std::launch::async, [this, number = numbers[n]] { return request_for(number); });
+  };
+  auto next = pose(0);
   for (std::size_t n = 0; n < numbers.size() && interrupted() == 0; ++n) {
-    std::future<FrameRequest> next;
-    if (n + 1 < numbers.size())
-      next = std::async(std::launch::async, [this, number = numbers[n + 1]] { return request_for(number); });
-    render_frame(std::move(request));
-    if (next.valid()) request = next.get();
+    FrameRequest request = next.get();
+    request.meanwhile = [&] {
+      begin_writing();
+      next = pose(n + 1);
+    };
+    RenderedFrame frame = source_->render(request);
+    request.meanwhile = nullptr;
+    finish_writing();
+    rendered_.emplace(std::move(frame), std::move(request));
   }
 }
 
-void Job::render_frame(FrameRequest request) {
-  RenderedFrame frame = source_->render(request);
-  finish_writing();
-  writing_ = std::async(std::launch::async, [this, frame = std::move(frame), request = std::move(request)]() mutable {
-    write(std::move(frame), request);
+void Job::begin_writing() {
+  if (!rendered_) return;
+  writing_ = std::async(std::launch::async, [this, rendered = std::move(*rendered_)]() mutable {
+    write(std::move(rendered.first), rendered.second);
   });
+  rendered_.reset();
 }
 
 // Rethrows what went wrong there.
 void Job::finish_writing() {
+  begin_writing();
   if (!writing_.valid()) return;
   writing_.get();
   save_stats(false);
@@ -162,7 +175,11 @@ int Job::run() {
   try {
     render_all(wanted);
   } catch (const Error& error) {
+    finish_writing();
     if (error.kind() != ErrorKind::interrupted) throw;
+  } catch (...) {
+    finish_writing();  // a frame that is rendered is kept whatever became of the next
+    throw;
   }
   finish_writing();
   save_stats(true);

@@ -20,6 +20,7 @@ class DeviceFrames final : public FrameSource {
 
   RenderedFrame render(const FrameRequest& request) override {
     if (kept_) {  // neither geometry nor camera nor light moves: one picture for all frames
+      if (request.meanwhile) request.meanwhile();
       RenderedFrame frame = *kept_;
       frame.stats.frame = request.number;
       frame.stats.time_s = request.time_s;

@@ -14,6 +14,7 @@ class ReferenceFrames final : public FrameSource {
   ReferenceFrames(const Scene& scene, const RenderSettings& settings) : scene_(scene), settings_(settings) {}
 
   RenderedFrame render(const FrameRequest& request) override {
+    if (request.meanwhile) request.meanwhile();
     const auto begun = std::chrono::steady_clock::now();
     ReferenceSettings s;
     s.width = settings_.width;

@@ -94,6 +94,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   out.stats.time_s = request.time_s;
   out.stats.counted = settings_.counted;
 
+  recorder_.at_next_submit(request.meanwhile);
   const std::uint64_t dispatched = recorder_.dispatches();
   const Motion motion = scene_->update(request.pose, request.camera, recorder_);
   bind_all();

@@ -36,6 +36,8 @@ struct FrameRequest {
   std::optional<Tile> only;  // no more than this part of the frame, for a probe
   /// Asked between batches of samples (the reference: rows); true ends the frame with Error{interrupted}.
   std::function<bool()> stop;
+  /// Called once, when the device has got work: what may run beside it may begin, and does not delay it.
+  std::function<void()> meanwhile;
 };
 
 struct RenderedFrame {

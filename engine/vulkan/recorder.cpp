@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -135,6 +136,7 @@ void Recorder::submit_and_wait() {
   recording_ = false;
   try {
     device_.queue().submit(vk::SubmitInfo({}, {}, *commands_), *fence_);
+    if (const auto call = std::exchange(at_submit_, nullptr)) call();
     const auto result = device_.logical().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
     if (result != vk::Result::eSuccess) throw Error(ErrorKind::device, "Vulkan: wait: " + vk::to_string(result));
     device_.logical().resetFences(*fence_);

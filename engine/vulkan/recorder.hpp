@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -55,6 +56,8 @@ class Recorder {
   void bind_roles(const PipelineLayout& layout, vk::PipelineBindPoint point, const void* push, std::size_t bytes,
                   vk::ShaderStageFlags stages);
 
+  /// Called once, between the next submit and its wait; may be empty.
+  void at_next_submit(std::function<void()> call) { at_submit_ = std::move(call); }
   /// Runs what was recorded and waits. Throws Error{device} when the device is lost.
   void submit_and_wait();
 
@@ -82,6 +85,7 @@ class Recorder {
   std::vector<const char*> marks_;
   const char* current_ = nullptr;
   std::map<std::string, double> times_;
+  std::function<void()> at_submit_;
   std::uint64_t dispatches_ = 0;
   bool recording_ = false;
 };
