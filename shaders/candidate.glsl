@@ -5,8 +5,8 @@
 #include "fresnel.glsl"
 
 // MASKED: some material has an alpha mask. TRANSLUCENT: some surface lets light through, shadow rays sum optical depth.
-layout(constant_id = 2) const bool MASKED = true;
-layout(constant_id = 3) const bool TRANSLUCENT = true;
+layout(constant_id = SPEC_MASKED) const bool MASKED = true;
+layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;
 
 struct Nearest {
   float t;

@@ -10,7 +10,7 @@
 #include "lists.glsl"
 #include "curves.glsl"
 #include "classify.glsl"
-layout(constant_id = 10) const uint LANES = 8;  // of a subgroup, which is the workgroup
+layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lanes.glsl"
 BUFFER(ROLE_CLASS_BOUNDS, coherent, uint, class_bounds);  // ordered integers: five least, five greatest a face
 layout(push_constant) uniform Push {

@@ -11,7 +11,7 @@
 #include "triangle.glsl"
 #include "frustum_memory.glsl"
 #include "hierarchy_box.glsl"
-layout(constant_id = 10) const uint LANES = 8;  // of a subgroup, which is the workgroup
+layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lanes.glsl"
 BUFFER(ROLE_CELLS, readonly, uvec2, cells_above);
 BUFFER(ROLE_CELLS_NEXT, readonly, uvec2, cells);

@@ -9,7 +9,7 @@
   layout(scalar, set = 0, binding = role) access buffer Block_##name { type name[]; }
 
 #ifdef COMPUTE
-layout(local_size_x = 64, local_size_x_id = 0) in;
+layout(local_size_x = 64, local_size_x_id = SPEC_GROUP) in;
 
 // Workgroups past 32768 are folded into y by the host.
 uint global_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Counts of tests: 64-bit sums a kind, and (for the `tests` layer) a sum a pixel. Without COUNTED they cost nothing.
 #extension GL_KHR_shader_subgroup_arithmetic : require
-layout(constant_id = 6) const bool COUNTED = false;
-layout(constant_id = 7) const bool PIXEL_COUNTED = false;
+layout(constant_id = SPEC_COUNTED) const bool COUNTED = false;
+layout(constant_id = SPEC_PIXEL_COUNTED) const bool PIXEL_COUNTED = false;
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_PIXEL_TESTS, coherent, uint, pixel_tests);
 

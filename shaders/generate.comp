@@ -16,10 +16,10 @@
 #include "counting.glsl"
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 
-layout(constant_id = 1) const bool SHADOWS = true;
-layout(constant_id = 2) const bool REFLECTIONS = true;
-layout(constant_id = 3) const bool REFRACTIONS = true;
-layout(constant_id = 5) const bool VOLUMES = true;
+layout(constant_id = SPEC_SHADOWS) const bool SHADOWS = true;
+layout(constant_id = SPEC_REFLECTIONS) const bool REFLECTIONS = true;
+layout(constant_id = SPEC_REFRACTIONS) const bool REFRACTIONS = true;
+layout(constant_id = SPEC_VOLUMES) const bool VOLUMES = true;
 
 layout(push_constant) uniform Push {
   uint kind;        // of the parents

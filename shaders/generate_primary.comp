@@ -13,9 +13,9 @@ BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 BUFFER(ROLE_VISIBILITY, readonly, uint64_t, visibility);
 BUFFER(ROLE_ACTIVE_PIXELS, readonly, uint, active_pixels);
 BUFFER(ROLE_SAMPLE_PLACES, readonly, vec2, sample_places);
-layout(constant_id = 1) const bool RASTER = true;
-layout(constant_id = 2) const bool ADAPTIVE = false;
-layout(constant_id = 9) const bool TEXTURED = true;
+layout(constant_id = SPEC_RASTER) const bool RASTER = true;
+layout(constant_id = SPEC_ADAPTIVE) const bool ADAPTIVE = false;
+layout(constant_id = SPEC_TEXTURED) const bool TEXTURED = true;
 layout(push_constant) uniform Push { PUSH_LIST } push;
 
 void main() {

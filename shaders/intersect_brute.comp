@@ -11,7 +11,7 @@
 #include "results.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-layout(constant_id = 1) const bool ANY_HIT = false;
+layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
   uint first;

@@ -12,7 +12,7 @@
 #include "lists.glsl"
 #include "counting.glsl"
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
-layout(constant_id = 1) const bool ANY_HIT = false;
+layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
   uint pairs;

@@ -6,7 +6,7 @@
 #define SHEAF_MEMORY_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-layout(constant_id = 12) const bool POSED = false;  // triangles are posed whenever they are read: only their last word is kept
+layout(constant_id = SPEC_POSED) const bool POSED = false;  // triangles are posed whenever they are read: only their last word is kept
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs { uint64_t pair[TRIANGLE_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer NodePairs { uint64_t pair[NODE_WORDS / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WordPairs { uint64_t pair[INSTANCE_WORDS / 2]; };

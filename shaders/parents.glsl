@@ -3,7 +3,7 @@
 // triangle, NO_INDEX for none, and t.
 #include "camera.glsl"
 #include "camera_pixels.glsl"
-layout(constant_id = 13) const bool RASTER = true;
+layout(constant_id = SPEC_RASTER) const bool RASTER = true;
 BUFFER(ROLE_VISIBILITY, readonly, uint64_t, visibility);
 
 struct Parent {

@@ -8,7 +8,7 @@
 #include "scene.glsl"
 #include "camera.glsl"
 #include "attributes.glsl"
-layout(constant_id = 2) const bool MASKED = true;
+layout(constant_id = SPEC_MASKED) const bool MASKED = true;
 // Bound, not by address: a fragment's 64-bit minimum by address made the pass a third dearer on a CPU device.
 BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
 layout(location = 0) flat in uint triangle;

@@ -18,8 +18,8 @@
 #include "camera.glsl"
 #include "attributes.glsl"
 #include "convert.glsl"
-layout(constant_id = 2) const bool MASKED = true;
-layout(constant_id = 10) const uint LANES = 8;  // of a subgroup
+layout(constant_id = SPEC_MASKED) const bool MASKED = true;
+layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup
 #include "lanes.glsl"
 BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
 layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer OneFloat { float v; };

@@ -9,7 +9,7 @@
 #include "lists.glsl"
 #include "counting.glsl"
 BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
-layout(constant_id = 3) const bool TRANSLUCENT = true;
+layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;
 layout(push_constant) uniform Push { PUSH_LIST } push;
 
 void main() {

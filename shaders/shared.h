@@ -18,6 +18,26 @@ using mat3 = glm::mat3;
 #define SHEAF_CONST const uint
 #endif
 
+// Specialization constants: the size of a workgroup, what a scene has, what is asked of a kernel, and the device's subgroups.
+#define SPEC_GROUP 0
+#define SPEC_ANY_HIT 1
+#define SPEC_MASKED 2
+#define SPEC_TRANSLUCENT 3
+#define SPEC_TEXTURED_NORMALS 4
+#define SPEC_VOLUMES 5
+#define SPEC_COUNTED 6
+#define SPEC_PIXEL_COUNTED 7
+#define SPEC_LOOSE 8
+#define SPEC_TEXTURED 9
+#define SPEC_LANES 10
+#define SPEC_VECTORS 11
+#define SPEC_POSED 12
+#define SPEC_RASTER 13
+#define SPEC_ADAPTIVE 14
+#define SPEC_SHADOWS 15
+#define SPEC_REFLECTIONS 16
+#define SPEC_REFRACTIONS 17
+
 // Roles of storage buffers. A role has the same binding number in every shader; a kernel declares the roles it reads.
 #define ROLE_FRAME 0
 #define ROLE_COUNTERS 1

@@ -61,7 +61,7 @@ void walk_on(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade sha
 }
 
 #ifdef PACKETS  // not a constant: what is never run would still be read and inlined at each start
-layout(constant_id = 10) const uint LANES = 8;  // of a subgroup
+layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup
 #include "packet.glsl"
 #endif
 

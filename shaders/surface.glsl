@@ -2,7 +2,7 @@
 // Everything a hit needs to know about the surface there (SHADING.md, Geometry and Material).
 #include "attributes.glsl"
 
-layout(constant_id = 4) const bool TEXTURED_NORMALS = true;
+layout(constant_id = SPEC_TEXTURED_NORMALS) const bool TEXTURED_NORMALS = true;
 
 struct Surface {
   vec3 point;

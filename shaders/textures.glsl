@@ -2,7 +2,7 @@
 // Texture lookups from plain buffers: one filter, the same bits on every device and in every kernel.
 #extension GL_EXT_control_flow_attributes : require
 #include "convert.glsl"
-layout(constant_id = 9) const bool TEXTURED = true;
+layout(constant_id = SPEC_TEXTURED) const bool TEXTURED = true;
 
 // Bytes of sRGB (IEC 61966-2-1). Above the linear part ((b/255 + 0.055)/1.055)^2.4 = s^5 · s^-0.2, s its square root; the last factor
 // is a polynomial of s − 1 of least greatest relative error over all bytes: 1.3e-6, as close as `pow` is; 255 gives 1.

@@ -13,7 +13,7 @@
 #include "lists.glsl"
 #include "counting.glsl"
 layout(set = 0, binding = ROLE_STRUCTURE) uniform accelerationStructureEXT structure;
-layout(constant_id = 1) const bool ANY_HIT = false;
+layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
 layout(push_constant) uniform Push {
   uint kind;
   PUSH_LIST

@@ -14,7 +14,7 @@
 #include "counting.glsl"
 #include "single_ray.glsl"
 BUFFER(ROLE_WORK, readonly, uint, work);
-layout(constant_id = 8) const bool LOOSE = false;
+layout(constant_id = SPEC_LOOSE) const bool LOOSE = false;
 
 layout(push_constant) uniform Push {
   uint kind;

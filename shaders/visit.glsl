@@ -2,7 +2,7 @@
 // What walks of the object hierarchy share, one ray a lane or a bundle a subgroup: depth first, a stack entry a level.
 #include "node.glsl"
 #include "convert.glsl"
-layout(constant_id = 1) const bool ANY_HIT = false;
+layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
 
 // Whether a hit may have to ask its material before it counts.
 bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }

@@ -45,6 +45,7 @@ class Job {
 
  private:
   [[nodiscard]] FrameRequest request_for(std::int64_t number) const;
+  void open_source(const FrameRequest& first);
   void render_all(const std::vector<std::int64_t>& numbers);
   void begin_writing();
   void write(RenderedFrame frame, const FrameRequest& request);
@@ -118,6 +119,11 @@ FrameRequest Job::request_for(std::int64_t number) const {
   return request;
 }
 
+void Job::open_source(const FrameRequest& first) {
+  source_ = make_frame_source(scene_, animations_, options_, camera_.moves(), first, stats_);
+  source_->set_dump(dump_.get());
+}
+
 // While a frame renders, the next one is posed and the one before is compressed and written. Neither begins before the
 // device has its work: on a CPU device all want the same cores, and whatever delays the submission leaves the others
 // idle.
@@ -129,6 +135,7 @@ void Job::render_all(const std::vector<std::int64_t>& numbers) {
   auto next = pose(0);
   for (std::size_t n = 0; n < numbers.size() && interrupted() == 0; ++n) {
     FrameRequest request = next.get();
+    if (!source_) open_source(request);
     request.meanwhile = [&] {
       begin_writing();
       next = pose(n + 1);
@@ -168,10 +175,6 @@ int Job::run() {
   for (const auto number : frames_)
     if (!already_there(number)) wanted.push_back(number);
   progress_.start(wanted.size());
-  if (!wanted.empty()) {
-    source_ = make_frame_source(scene_, animations_, camera_, options_, fps_, wanted.front(), stats_);
-    source_->set_dump(dump_.get());
-  }
   try {
     render_all(wanted);
   } catch (const Error& error) {

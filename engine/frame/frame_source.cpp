@@ -57,10 +57,10 @@ void describe(const Scene& scene, const Features& features, const RenderSettings
 }  // namespace
 
 std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::vector<std::uint32_t>& animations,
-                                               const CameraSource& camera, const RenderOptions& options, double fps,
-                                               std::int64_t first_frame, RunStats& stats) {
+                                               const RenderOptions& options, bool camera_moves,
+                                               const FrameRequest& first, RunStats& stats) {
   const RenderSettings& settings = options.settings;
-  const Features features = find_features(scene, animations, settings, camera.moves());
+  const Features features = find_features(scene, animations, settings, camera_moves);
   describe(scene, features, settings, stats);
   if (settings.strategy == Strategy::reference) {
     stats.device_name = "CPU, double precision";
@@ -76,14 +76,7 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
   const bool automatic = settings.strategy == Strategy::automatic;
   const Plan plan = make_plan(features, settings, automatic ? Strategy::bvh : settings.strategy);
   auto on_device = std::make_shared<DeviceScene>(*device, scene, settings, plan);
-  if (automatic) {
-    FrameRequest first;
-    first.number = first_frame;
-    first.time_s = static_cast<double>(first_frame) / fps;
-    first.pose = evaluate_pose(scene, animations, first.time_s);
-    first.camera = camera.at(first.pose, first.time_s);
-    choice = choose_strategy(*device, on_device, features, settings, first);
-  }
+  if (automatic) choice = choose_strategy(*device, on_device, features, settings, first);
   stats.strategy = name_of(choice.strategy);
   stats.chosen_because = choice.because;
   auto frames =

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "cli/options.hpp"
-#include "frame/camera_source.hpp"
 #include "frame/renderer.hpp"
 
 namespace sheaf {
@@ -18,11 +17,11 @@ class FrameSource {
   virtual void set_dump(DumpWriter*) {}
 };
 
-/// Opens the device (unless the strategy is `reference`), settles `auto`, and fills in what the stats say of scene and
-/// device.
+/// Opens the device (unless the strategy is `reference`), settles `auto` on the first frame, and fills in what the
+/// stats say of scene and device.
 [[nodiscard]] std::unique_ptr<FrameSource> make_frame_source(const Scene& scene,
                                                              const std::vector<std::uint32_t>& animations,
-                                                             const CameraSource& camera, const RenderOptions& options,
-                                                             double fps, std::int64_t first_frame, RunStats& stats);
+                                                             const RenderOptions& options, bool camera_moves,
+                                                             const FrameRequest& first, RunStats& stats);
 
 }  // namespace sheaf

@@ -6,7 +6,7 @@
 namespace sheaf {
 
 Animate::Animate(const Device& device, const Plan& plan, bool deforms) {
-  const std::array constants{SpecConstant{12, plan.posed}};
+  const std::array constants{SpecConstant{SPEC_POSED, plan.posed}};
   triangles_ = Kernel(device, "animate_triangles", constants);
   if (deforms) vertices_ = Kernel(device, "animate_vertices");
 }

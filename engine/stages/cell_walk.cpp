@@ -18,7 +18,7 @@ std::uint32_t rounded(std::uint64_t items) {
 
 CellWalk::CellWalk(const TraceContext& c, std::uint32_t frustum_sets)
     : context_(c), ranges_(c.device, "pairs_ranges"), compact_(c.device, "open"), single_(c, false) {
-  const std::vector<SpecConstant> counting{{6, c.counted}};
+  const std::vector<SpecConstant> counting{{SPEC_COUNTED, c.counted}};
   open_ = Kernel(c.device, "pairs_open", counting);
   const auto lanes = lane_constants(c.device);
   auto make = [&](bool any_hit) {

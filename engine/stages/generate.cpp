@@ -6,15 +6,20 @@
 namespace sheaf {
 
 Generate::Generate(const Device& device, const Plan& plan, const Features& features, bool counted) : plan_(plan) {
-  const std::array first{SpecConstant{1, plan.raster}, SpecConstant{2, plan.adaptive},
-                         SpecConstant{9, features.textured}};
+  const std::array first{SpecConstant{SPEC_RASTER, plan.raster}, SpecConstant{SPEC_ADAPTIVE, plan.adaptive},
+                         SpecConstant{SPEC_TEXTURED, features.textured}};
   primary_ = Kernel(device, "generate_primary", first);
-  const SpecConstant one{0, 1};
+  const SpecConstant one{SPEC_GROUP, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
-  const std::array constants{
-      SpecConstant{1, plan.shadows},          SpecConstant{2, plan.reflections}, SpecConstant{3, plan.refractions},
-      SpecConstant{4, plan.textured_normals}, SpecConstant{5, features.volumes}, SpecConstant{6, counted},
-      SpecConstant{9, features.textured},     SpecConstant{12, plan.posed},      SpecConstant{13, plan.raster}};
+  const std::array constants{SpecConstant{SPEC_SHADOWS, plan.shadows},
+                             SpecConstant{SPEC_REFLECTIONS, plan.reflections},
+                             SpecConstant{SPEC_REFRACTIONS, plan.refractions},
+                             SpecConstant{SPEC_TEXTURED_NORMALS, plan.textured_normals},
+                             SpecConstant{SPEC_VOLUMES, features.volumes},
+                             SpecConstant{SPEC_COUNTED, counted},
+                             SpecConstant{SPEC_TEXTURED, features.textured},
+                             SpecConstant{SPEC_POSED, plan.posed},
+                             SpecConstant{SPEC_RASTER, plan.raster}};
   generate_ = Kernel(device, "generate", constants);
 }
 

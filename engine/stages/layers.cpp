@@ -7,8 +7,8 @@
 namespace sheaf {
 
 Layers::Layers(const Device& device, const Plan& plan, const Features& features) {
-  const std::array constants{SpecConstant{4, plan.textured_normals}, SpecConstant{9, features.textured},
-                             SpecConstant{12, plan.posed}};
+  const std::array constants{SpecConstant{SPEC_TEXTURED_NORMALS, plan.textured_normals},
+                             SpecConstant{SPEC_TEXTURED, features.textured}, SpecConstant{SPEC_POSED, plan.posed}};
   layers_ = Kernel(device, "layers", constants);
 }
 

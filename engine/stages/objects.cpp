@@ -6,7 +6,7 @@
 namespace sheaf {
 
 Objects::Objects(const Device& device, const Plan& plan) {
-  const std::array constants{SpecConstant{12, plan.posed}};
+  const std::array constants{SpecConstant{SPEC_POSED, plan.posed}};
   if (plan.object_hierarchy) refit_ = Kernel(device, "objects_refit", constants);
 }
 

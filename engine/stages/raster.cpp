@@ -35,7 +35,7 @@ void Raster::make_pipeline(const Plan& plan, const Features& features) {
   pass_ = vk::raii::RenderPass(device.logical(), vk::RenderPassCreateInfo({}, {}, subpass));
 
   const auto vertex = make_shader_module(device, "raster_vert"), fragment = make_shader_module(device, "raster_frag");
-  const std::array entries{vk::SpecializationMapEntry(2, 0, 4), vk::SpecializationMapEntry(12, 4, 4)};
+  const std::array entries{vk::SpecializationMapEntry(SPEC_MASKED, 0, 4), vk::SpecializationMapEntry(SPEC_POSED, 4, 4)};
   const std::array<vk::Bool32, 2> values{features.masked, plan.posed};
   const vk::SpecializationInfo special(entries.size(), entries.data(), sizeof(values), values.data());
   const std::array stages{

@@ -10,8 +10,8 @@
 namespace sheaf {
 
 RasterSpans::RasterSpans(const Device& device, const Plan& plan, const Features& features) {
-  const std::array constants{SpecConstant{2, features.masked}, SpecConstant{9, features.textured},
-                             SpecConstant{10, device.limits().subgroup}, SpecConstant{12, plan.posed}};
+  const std::array constants{SpecConstant{SPEC_MASKED, features.masked}, SpecConstant{SPEC_TEXTURED, features.textured},
+                             SpecConstant{SPEC_LANES, device.limits().subgroup}, SpecConstant{SPEC_POSED, plan.posed}};
   kernel_ = Kernel(device, "raster_spans", constants);
 }
 

@@ -19,7 +19,7 @@ class Scan {
  public:
   Scan() = default;
   Scan(const Device& device, const std::string& stem) {
-    const SpecConstant group{0, gpu::SCAN_GROUP};
+    const SpecConstant group{SPEC_GROUP, gpu::SCAN_GROUP};
     reduce_ = Kernel(device, stem + "_reduce", {&group, 1});
     spine_ = Kernel(device, stem + "_spine", {&group, 1});
     scatter_ = Kernel(device, stem + "_scatter", {&group, 1});

@@ -6,7 +6,8 @@
 namespace sheaf {
 
 Shade::Shade(const Device& device, const Features& features, bool counted) {
-  const std::array constants{SpecConstant{3, features.translucent() || features.masked}, SpecConstant{6, counted}};
+  const std::array constants{SpecConstant{SPEC_TRANSLUCENT, features.translucent() || features.masked},
+                             SpecConstant{SPEC_COUNTED, counted}};
   shade_ = Kernel(device, "shade", constants);
 }
 

@@ -31,7 +31,7 @@ KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t ray
 
 SortRays::SortRays(const TraceContext& context) {
   const Device& device = context.device;
-  const SpecConstant group{0, gpu::SCAN_GROUP};
+  const SpecConstant group{SPEC_GROUP, gpu::SCAN_GROUP};
   auto run_kernel = [&](const char* stem) { return Kernel(device, stem, {&group, 1}); };
   bounds_ = run_kernel("hash_bounds");
   hash_ = Kernel(device, "hash");

@@ -16,14 +16,18 @@ namespace sheaf {
 
 std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hit) {
   const bool translucent = c.features.translucent() || c.features.masked;
-  return {{1, any_hit},      {2, c.features.masked},       {3, any_hit && translucent},
-          {6, c.counted},    {7, c.settings.layers.tests}, {9, c.features.textured},
-          {12, c.plan.posed}};
+  return {{SPEC_ANY_HIT, any_hit},
+          {SPEC_MASKED, c.features.masked},
+          {SPEC_TRANSLUCENT, any_hit && translucent},
+          {SPEC_COUNTED, c.counted},
+          {SPEC_PIXEL_COUNTED, c.settings.layers.tests},
+          {SPEC_TEXTURED, c.features.textured},
+          {SPEC_POSED, c.plan.posed}};
 }
 
 std::vector<SpecConstant> lane_constants(const Device& device) {
   const std::uint32_t lanes = std::min(device.limits().subgroup, gpu::BUNDLE);
-  return {{0, lanes}, {10, lanes}, {11, gpu::BUNDLE / lanes}};
+  return {{SPEC_GROUP, lanes}, {SPEC_LANES, lanes}, {SPEC_VECTORS, gpu::BUNDLE / lanes}};
 }
 
 std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {

@@ -25,10 +25,11 @@ std::uint32_t level_of_opening(std::uint32_t rays, std::uint64_t triangles) {
 }  // namespace
 
 TraversePairs::TraversePairs(const TraceContext& c) : context_(c), hierarchy_(c.device), compact_(c.device, "pairs") {
-  const std::array posed{SpecConstant{12, c.plan.posed}};
+  const std::array posed{SpecConstant{SPEC_POSED, c.plan.posed}};
   spheres_ = Kernel(c.device, "objects_spheres", posed);
   if (c.plan.sorts) sort_ = SortRays(c);
-  const std::array counting{SpecConstant{6, c.counted}, SpecConstant{7, c.settings.layers.tests}};
+  const std::array counting{SpecConstant{SPEC_COUNTED, c.counted},
+                            SpecConstant{SPEC_PIXEL_COUNTED, c.settings.layers.tests}};
   test_ = Kernel(c.device, "traverse_pairs", counting);
   auto make = [&](bool any_hit) { return Kernel(c.device, "intersect_pairs", candidate_constants(c, any_hit)); };
   nearest_ = make(false);

@@ -18,7 +18,7 @@ TraverseQuery::TraverseQuery(const TraceContext& c) : context_(c) {
   if (!c.device.limits().ray_query)
     throw Error(ErrorKind::device,
                 c.device.summary().name + ": --strategy rayquery: the device has no VK_KHR_ray_query");
-  const std::array posed{SpecConstant{12, c.plan.posed}};
+  const std::array posed{SpecConstant{SPEC_POSED, c.plan.posed}};
   boxes_kernel_ = Kernel(c.device, "objects_boxes", posed);
   auto make = [&](bool any_hit) { return Kernel(c.device, "traverse_query", candidate_constants(c, any_hit)); };
   nearest_ = make(false);

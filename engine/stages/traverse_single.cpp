@@ -8,9 +8,9 @@ namespace sheaf {
 SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
-    constants.push_back({8, loose});
+    constants.push_back({SPEC_LOOSE, loose});
     const bool packets = loose && c.device.limits().cpu;
-    if (packets) constants.push_back({10, c.device.limits().subgroup});
+    if (packets) constants.push_back({SPEC_LANES, c.device.limits().subgroup});
     return Kernel(c.device, packets ? "traverse_packets" : "traverse_single", constants);
   };
   nearest = make(false);

@@ -192,7 +192,7 @@ TEST(DeviceHash, RaysToADirectionalLightGoByTheirPlaceAcrossIt) {
 }
 
 TEST(DeviceHash, BoundsHoldEveryOriginAndNoMore) {
-  const SpecConstant group{0, gpu::SCAN_GROUP};
+  const SpecConstant group{SPEC_GROUP, gpu::SCAN_GROUP};
   const Kernel kernel(device(), "hash_bounds", {&group, 1});
   for (const double scale : {1e-7, 1.0, 1e7})
     for (const auto n : boundary_sizes()) {

@@ -101,7 +101,7 @@ class Chain {
 
  private:
   static Kernel run_kernel(const char* stem) {
-    const SpecConstant group{0, gpu::SCAN_GROUP};
+    const SpecConstant group{SPEC_GROUP, gpu::SCAN_GROUP};
     return {device(), stem, {&group, 1}};
   }
 
