@@ -9,10 +9,20 @@
   layout(scalar, set = 0, binding = role) access buffer Block_##name { type name[]; }
 
 #ifdef COMPUTE
+#include "dealing.h"
 layout(local_size_x = 64, local_size_x_id = SPEC_GROUP) in;
+layout(constant_id = SPEC_WORKERS) const uint WORKERS = 1;  // threads to which the device deals workgroups; 1: as it likes
+const uint LONGEST_TURN = 6u;  // 64 workgroups, log2
 
 // Workgroups past 32768 are folded into y by the host.
-uint global_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+uint group_count() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y; }
+uint group_number() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+// The piece of work that is this workgroup's.
+uint global_group() {
+  if (WORKERS == 1u) return group_number();
+  return dealt(group_number(), group_count(), WORKERS, LONGEST_TURN);
+}
 uint global_index() { return global_group() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }
 #endif
 

@@ -25,8 +25,6 @@ BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
 layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer OneFloat { float v; };
 layout(push_constant) uniform Push {
   uvec2 shown;   // the visibility buffer: by address its words are loaded in half the time
-  uint blocks;   // of GL_WorkGroupSize triangles
-  uint workers;  // one draws blocks w, w + workers, …: neighbours go to different ones, and all have as much to do
   uint bands;    // of rows, for few triangles to keep all cores busy
 } push;
 
@@ -217,13 +215,13 @@ void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
 }
 
 void main() {
-  uint group = global_group() / push.bands, run = (push.blocks + push.workers - 1u) / push.workers;
-  uint block = (group % run) * push.workers + group / run;
-  if (group >= run * push.workers || block >= push.blocks) return;
-  uint triangle = block * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  // Neighbours go to different threads: what is seen large is so for many in a row.
+  uint blocks = group_count() / push.bands, first = dealt(group_number() / push.bands, blocks, WORKERS, 0u) * gl_WorkGroupSize.x;
+  if (group_number() >= blocks * push.bands || first >= frame.triangles) return;
+  uint triangle = first + gl_LocalInvocationID.x;
   bool there = triangle < frame.triangles;
   triangle = min(triangle, frame.triangles - 1u);
-  screen = screen_of(global_group() % push.bands);
+  screen = screen_of(group_number() % push.bands);
   Corners corners = load_triangle(triangle);
   Outline o = outline_of(corners);
   vec2 extent = o.hi - o.lo + 1.0;

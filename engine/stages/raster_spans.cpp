@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "stages/raster_spans.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string_view>
-#include <thread>
 
 namespace sheaf {
 
@@ -22,15 +20,12 @@ bool RasterSpans::pays(const Device& device) {
 
 void RasterSpans::record(Recorder& recorder, const Buffer& visibility, std::uint32_t triangles) const {
   constexpr std::uint32_t enough_groups = 64;  // for some cores to share evenly
-  const std::uint32_t blocks = (triangles + gpu::GROUP - 1) / gpu::GROUP;
-  // llvmpipe has a thread a core, and gives each as many workgroups, one behind the other.
-  const std::uint32_t workers = std::clamp(std::thread::hardware_concurrency(), 1U, blocks);
-  const std::uint32_t run = (blocks + workers - 1) / workers, bands = (enough_groups + blocks - 1) / blocks;
+  const std::uint32_t blocks = (triangles + gpu::GROUP - 1) / gpu::GROUP, bands = (enough_groups + blocks - 1) / blocks;
   const struct {
     glm::uvec2 shown;
-    std::uint32_t blocks, workers, bands;
-  } push{visibility.address_words(), blocks, workers, bands};
-  recorder.dispatch(kernel_, push, std::uint64_t{run} * workers * bands);
+    std::uint32_t bands;
+  } push{visibility.address_words(), bands};
+  recorder.dispatch(kernel_, push, std::uint64_t{blocks} * bands);
 }
 
 }  // namespace sheaf

@@ -6,12 +6,21 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "core/error.hpp"
 #include "vulkan/instance.hpp"
 
 namespace sheaf {
 namespace {
+
+/// llvmpipe has a thread a core that this process may use, or as many as LP_NUM_THREADS says. A wrong guess costs time
+/// alone.
+std::uint32_t cpu_workers() {
+  const char* said = std::getenv("LP_NUM_THREADS");
+  const std::uint32_t given = said == nullptr ? 0 : static_cast<std::uint32_t>(std::strtoul(said, nullptr, 10));
+  return std::clamp(given > 0 ? given : std::thread::hardware_concurrency(), 1U, 256U);
+}
 
 bool has_extension(const std::vector<vk::ExtensionProperties>& all, const char* name) {
   return std::any_of(all.begin(), all.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
@@ -159,6 +168,7 @@ Device::Device(const std::string& selector) {
   limits_.groups_x = properties.limits.maxComputeWorkGroupCount[0];
   limits_.timestamp_ns = properties.limits.timestampPeriod;
   limits_.cpu = properties.deviceType == vk::PhysicalDeviceType::eCpu;
+  if (limits_.cpu) limits_.workers = cpu_workers();
   limits_.ray_query = summary_.ray_query;
 
   const float priority = 1;

@@ -60,8 +60,9 @@ vk::raii::ShaderModule make_shader_module(const Device& device, std::string_view
 
 Kernel::Kernel(const Device& device, std::string_view stem, std::span<const SpecConstant> constants)
     : stem_(stem), layout_(device, declared_roles(shader_code(stem)), vk::ShaderStageFlagBits::eCompute) {
-  auto make = [&device, stem = stem_, layout = layout_.handle(),
-               given = std::vector(constants.begin(), constants.end())] {
+  std::vector given(constants.begin(), constants.end());
+  given.push_back({SPEC_WORKERS, device.limits().workers});
+  auto make = [&device, stem = stem_, layout = layout_.handle(), given = std::move(given)] {
     return make_pipeline(device, stem, layout, given);
   };
   pipeline_ = std::async(std::launch::async, std::move(make)).share();

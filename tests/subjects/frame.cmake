@@ -1,3 +1,4 @@
 # SPDX-License-Identifier: MIT
+sheaf_test(dealing_test sheaf_core)
 sheaf_test(plan_test sheaf_core)
 sheaf_test(scene_parts_test sheaf_core)
