@@ -53,7 +53,6 @@
 #define ROLE_MORPHS 46
 #define ROLE_SCAN_IN 47
 #define ROLE_SCAN_OUT 48
-#define ROLE_BUNDLE_FLAGS 49
 #define ROLE_STATS 50
 #define ROLE_BOXES 51
 #define ROLE_STRUCTURE 52  // the one role that is an acceleration structure

@@ -20,9 +20,16 @@ float max_lanes(float x) {
   return x;
 }
 
+float sum_lanes(float x) {
+  if (LANES > 8u) return subgroupAdd(x);
+  for (uint m = 1u; m < LANES; m <<= 1) x += subgroupShuffleXor(x, m);
+  return x;
+}
+
 float min_lanes(float x) { return -max_lanes(-x); }
 vec3 max_lanes(vec3 x) { return vec3(max_lanes(x.x), max_lanes(x.y), max_lanes(x.z)); }
 vec3 min_lanes(vec3 x) { return -max_lanes(-x); }
+vec3 sum_lanes(vec3 x) { return vec3(sum_lanes(x.x), sum_lanes(x.y), sum_lanes(x.z)); }
 
 // A bit a lane, of the first 32.
 uint lanes_where(bool b) { return LANES > 8u ? subgroupBallot(b).x : or_lanes(b ? 1u << gl_SubgroupInvocationID : 0u); }

@@ -32,6 +32,13 @@ void child_box(Boxes b, uint c, out vec3 lo, out vec3 hi) {
   hi = on_grid(b.grid, uvec3(byte_of(b.hx, c), byte_of(b.hy, c), byte_of(b.hz, c)));
 }
 
+// The planes of each axis that rays run against are exchanged: what was low is then what such a ray meets first. To exchange the bytes of
+// eight boxes takes as much as to exchange one box' planes.
+Boxes turned_boxes(Boxes b, bvec3 backwards) {
+  return Boxes(b.grid, backwards.x ? b.hx : b.lx, backwards.y ? b.hy : b.ly, backwards.z ? b.hz : b.lz, backwards.x ? b.lx : b.hx,
+               backwards.y ? b.ly : b.hy, backwards.z ? b.lz : b.hz);
+}
+
 bool is_node(uint child) { return (child & CHILD_LEAF) == 0u; }
 uint leaf_first(uint child) { return child & 0x07FFFFFFu; }
 uint leaf_count(uint child) { return ((child >> 27) & 15u) + 1u; }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A list: rays in slots, their hits, and an order (slot numbers), each known by its address, for no descriptor's bounds to be
-// checked (memory.glsl). Rays are structures of RAY_WORDS, two words a load, so that what a kernel needs of one lies in a cache line;
-// behind the last of `frame.capacity` structures lie the slots' pixels, one word each: compaction asks for nothing else.
+// checked (memory.glsl). Rays are read two words a load. First come the parts of `frame.capacity` rays that tracers read, RAY_PART words
+// each, then as many of what the rays are for, then the slots' pixels, one word each: compaction asks for nothing else.
 #ifndef SHEAF_RAYS_GLSL
 #define SHEAF_RAYS_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 layout(scalar, set = 0, binding = ROLE_FRAME) readonly buffer Block_frame { Frame frame; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { uint64_t pair[RAY_WORDS / 2]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { uint64_t pair[RAY_PART / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayPixel { uint v; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListSlot { uint v; };
@@ -37,12 +37,15 @@ struct RayLoad {  // what the ray is for
 };
 
 // Offsets fit 32 bits: a buffer is at most 4 GiB (checked where it is made).
-RayPairs ray_pairs(uvec2 list, uint slot) { return RayPairs(pack64(list) + uint64_t(slot * (4u * RAY_WORDS))); }
+RayPairs ray_pairs(uvec2 list, uint slot, uint word) {
+  uint place = word < RAY_PART ? slot : frame.capacity + slot;
+  return RayPairs(pack64(list) + uint64_t(place * (4u * RAY_PART)));
+}
 RayPixel ray_pixel(uvec2 list, uint slot) { return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot))); }
 
-vec2 load_ray_pair(uvec2 list, uint slot, uint word) { return uintBitsToFloat(unpack32(ray_pairs(list, slot).pair[word / 2u])); }
+vec2 load_ray_pair(uvec2 list, uint slot, uint word) { return uintBitsToFloat(unpack32(ray_pairs(list, slot, word).pair[word % RAY_PART / 2u])); }
 void store_ray_pair(uvec2 list, uint slot, uint word, float first, float second) {
-  ray_pairs(list, slot).pair[word / 2u] = pack64(floatBitsToUint(vec2(first, second)));
+  ray_pairs(list, slot, word).pair[word % RAY_PART / 2u] = pack64(floatBitsToUint(vec2(first, second)));
 }
 
 Ray load_ray(uvec2 list, uint slot) {

@@ -70,25 +70,6 @@ void scan_store(uint i, uint before, uint own) {
   if (own != 0u) pairs_next[before] = pairs[i];
 }
 void scan_total(uint total) { counters[COUNT_SURVIVORS] = total; }
-#elif defined(SCAN_LOOSE)
-// Bundles too wide to be walked as one → a list of their rays, and the rest → a list of bundles.
-BUFFER(ROLE_BUNDLE_FLAGS, readonly, uint, bundle_flags);
-BUFFER(ROLE_WORK, writeonly, uint, work);  // loose bundles, then, past the number of all bundles, tight ones
-uint scan_count() { return groups_of(counters[COUNT_RAYS + push.kind], BUNDLE); }
-uint scan_load(uint i) { return bundle_flags[i]; }
-void scan_store(uint i, uint before, uint own) {
-  if (own != 0u)
-    work[before] = i;
-  else
-    work[scan_count() + i - before] = i;
-}
-void scan_total(uint total) {
-  uint bundles = scan_count();
-  counters[COUNT_LOOSE] = total;
-  counters[COUNT_TIGHT] = bundles - total;
-  set_args(ARGS_LOOSE, total);
-  set_args(ARGS_TIGHT, bundles - total);
-}
 #else
 // Any array of numbers: the primitive itself, for its tests.
 BUFFER(ROLE_SCAN_IN, readonly, uint, scan_in);

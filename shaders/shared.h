@@ -28,7 +28,7 @@ SHEAF_CONST KIND_SHADOW = 1u;
 SHEAF_CONST KIND_REFLECTION = 2u;
 SHEAF_CONST KIND_REFRACTION = 3u;
 
-// A ray's words, in pairs (rays.glsl).
+// A ray's words, in pairs (rays.glsl). A list has the first RAY_PART of all its rays, then the others: tracers read no more than the first.
 SHEAF_CONST RAY_ORIGIN = 0u;     // 3 words
 SHEAF_CONST RAY_DIRECTION = 3u;  // 3 words, unit length
 SHEAF_CONST RAY_TMIN = 6u;
@@ -38,6 +38,7 @@ SHEAF_CONST RAY_COVERAGE = 11u;
 SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light. 13: unused
 SHEAF_CONST RAY_CONE = 14u;      // width and spread of the ray's cone, where textures are filtered (SHADING.md, Texture filter)
 SHEAF_CONST RAY_WORDS = 16u;
+SHEAF_CONST RAY_PART = 8u;
 // And behind the list's rays a word each: the ray's pixel in the tile; NO_INDEX: the slot holds no ray.
 SHEAF_CONST RAY_SLOT_BYTES = 4u * (RAY_WORDS + 1u);
 
@@ -48,7 +49,6 @@ SHEAF_CONST COUNT_RAYS = 5u;          // rays of the list at work: 5 + kind
 SHEAF_CONST COUNT_CHUNKS = 9u;
 SHEAF_CONST COUNT_OVERFLOW = 10u;     // not 0: the band needs more slots than there are
 SHEAF_CONST COUNT_PAIRS = 11u;        // pairs that survived a level
-SHEAF_CONST COUNT_TIGHT = 12u;        // bundles fit for traversal as a whole
 SHEAF_CONST COUNT_LOOSE = 13u;        // bundles whose rays go one a lane: too wide, or given up
 SHEAF_CONST COUNT_SURVIVORS = 15u;    // of a batch of pairs
 SHEAF_CONST COUNT_BOUNDS = 16u;       // 6 words: ordered-integer bounds of the batch's origins
@@ -86,21 +86,18 @@ SHEAF_CONST ARGS_PARENTS = 4u;    // one invocation a parent
 SHEAF_CONST ARGS_SLOTS = 5u;      // one workgroup a scan block of the slots
 SHEAF_CONST ARGS_PAIR_SCATTER = 6u;  // like ARGS_PAIR_BLOCKS, or nothing where the next level has no room
 SHEAF_CONST ARGS_LOOSE = 7u;      // one invocation a loose ray
-SHEAF_CONST ARGS_TIGHT = 8u;      // one workgroup a tight bundle
-SHEAF_CONST ARGS_ONE = 9u;        // a single workgroup, or nothing when the list is empty
-SHEAF_CONST ARGS_PARENTS_REFRACTION = 10u;
-SHEAF_CONST ARGS_SLOTS_SHADOW = 11u;
-SHEAF_CONST ARGS_BUNDLE_RUNS = 12u;   // one invocation a bundle
-SHEAF_CONST ARGS_BUNDLE_BLOCKS = 13u;  // one workgroup a scan block of the bundles
-SHEAF_CONST ARGS_PAIR_RANGES = 14u;    // one invocation a pair of the last level made
-SHEAF_CONST ARGS_WALK_RUNS = 15u;      // one invocation a cell of the walk
-SHEAF_CONST ARGS_WALK_CELLS = 16u;     // one workgroup a cell of the walk
-SHEAF_CONST ARGS_PAIRS = 17u;          // one invocation a pair of the level at work
-SHEAF_CONST ARGS_PAIR_BLOCKS = 18u;    // one workgroup a scan block of them
-SHEAF_CONST ARGS_WALK_BLOCKS = 19u;    // one workgroup a scan block of the walk's rays
-SHEAF_CONST ARGS_WALK_SCATTER = 20u;   // the same, or nothing where the cells have no room
-SHEAF_CONST ARGS_CELL_BLOCKS = 21u;    // one workgroup a scan block of the walk's cells
-SHEAF_CONST ARGS_COUNT = 22u;
+SHEAF_CONST ARGS_ONE = 8u;        // a single workgroup, or nothing when the list is empty
+SHEAF_CONST ARGS_PARENTS_REFRACTION = 9u;
+SHEAF_CONST ARGS_SLOTS_SHADOW = 10u;
+SHEAF_CONST ARGS_PAIR_RANGES = 11u;    // one invocation a pair of the last level made
+SHEAF_CONST ARGS_WALK_RUNS = 12u;      // one invocation a cell of the walk
+SHEAF_CONST ARGS_WALK_CELLS = 13u;     // one workgroup a cell of the walk
+SHEAF_CONST ARGS_PAIRS = 14u;          // one invocation a pair of the level at work
+SHEAF_CONST ARGS_PAIR_BLOCKS = 15u;    // one workgroup a scan block of them
+SHEAF_CONST ARGS_WALK_BLOCKS = 16u;    // one workgroup a scan block of the walk's rays
+SHEAF_CONST ARGS_WALK_SCATTER = 17u;   // the same, or nothing where the cells have no room
+SHEAF_CONST ARGS_CELL_BLOCKS = 18u;    // one workgroup a scan block of the walk's cells
+SHEAF_CONST ARGS_COUNT = 19u;
 
 SHEAF_CONST GROUP = 64u;          // invocations of a plain workgroup
 SHEAF_CONST SCAN_GROUP = 32u;     // invocations of a scan workgroup …

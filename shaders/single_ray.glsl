@@ -23,12 +23,12 @@ bool is_rest_of_leaf(uint child) { return !is_node(child) && child < NEXT; }
 
 // Tests a node's children; those entered become the group at work.
 void step_node(uint node, Ray ray, Shear s, float farthest, inout Walk w, inout Tests tests) {
-  Boxes boxes = load_boxes(node);
+  Boxes boxes = turned_boxes(load_boxes(node), lessThan(s.inverse, vec3(0)));
   uint entered = 0u;
   for (uint c = 0u; c < WIDE; ++c) {
-    vec3 lo, hi;
-    child_box(boxes, c, lo, hi);
-    vec2 range = slab(s, lo, hi);
+    vec3 near, far;
+    child_box(boxes, c, near, far);
+    vec2 range = slab_in_order(s, near, far);
     entered |= range.x <= range.y && range.y >= ray.tmin && range.x <= farthest ? 1u << c : 0u;
   }
   tests.boxes += WIDE;

@@ -19,7 +19,7 @@
 #include "visit.glsl"
 #include "beam.glsl"
 BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
-BUFFER(ROLE_WORK, coherent, uint, work);
+BUFFER(ROLE_WORK, writeonly, uint, work);
 layout(push_constant) uniform Push {
   uint kind;
   uint most_effort;
@@ -69,29 +69,22 @@ void walk(Beam beam, Cone cone) {
   }
 }
 
-// The bundle joins those whose rays go alone. What it found is found again there.
-void give_up(uint bundle) {
-  if (lane == 0u) {
-    uint loose = atomicAdd(counters[COUNT_LOOSE], 1u);
-    work[loose] = bundle;
-    raise_args(ARGS_LOOSE, loose + 1u);
-  }
-}
+#include "loose.glsl"
 
 void main() {
-  if (global_group() >= counters[COUNT_TIGHT]) return;
-  uint rays_here = counters[COUNT_RAYS + push.kind];
-  uint bundle = work[(rays_here + BUNDLE - 1u) / BUNDLE + global_group()];
-  lane = gl_SubgroupInvocationID;
+  uint rays_here = counters[COUNT_RAYS + push.kind], bundle = global_group();
   first_ray = bundle * BUNDLE;
-  ray_count = min(BUNDLE, rays_here - first_ray);
+  if (first_ray >= rays_here) return;
   RayNode node = LOAD_RAY_NODE(ray_nodes, bundle * RAY_NODE_WORDS);
+  if (node.angle >= LOOSE_ANGLE) return;
+  lane = gl_SubgroupInvocationID;
+  ray_count = min(BUNDLE, rays_here - first_ray);
   visit = Visit(0u, 0u, octant_of(node.axis));
   Beam beam = load_bundle();
   walk(beam, cone_of(node));
-  if (effort > push.most_effort)
-    give_up(bundle);
-  else
+  if (effort > push.most_effort) {  // what it found is found again
+    if (lane == 0u) goes_alone(bundle);
+  } else
     [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);

@@ -55,12 +55,16 @@ float least(vec3 v) {
   return xy < v.z ? xy : v.z;
 }
 
-// Entry and exit along the ray of a box (already padded). Hit where x <= y.
+// Entry and exit along the ray of a box (already padded), given its planes in the order in which the ray meets them. Hit where x <= y.
+vec2 slab_in_order(Shear s, vec3 near, vec3 far) {
+  precise vec3 entry = (near - s.origin) * s.inverse;
+  precise vec3 leave = (far - s.origin) * s.inverse;
+  return vec2(greatest(entry), least(leave));
+}
+
 vec2 slab(Shear s, vec3 lo, vec3 hi) {
   bvec3 backwards = lessThan(s.inverse, vec3(0));
-  precise vec3 entry = (mix(lo, hi, backwards) - s.origin) * s.inverse;
-  precise vec3 leave = (mix(hi, lo, backwards) - s.origin) * s.inverse;
-  return vec2(greatest(entry), least(leave));
+  return slab_in_order(s, mix(lo, hi, backwards), mix(hi, lo, backwards));
 }
 
 // Exact product p + e = a·b without a fused multiply (Dekker 1971, Veltkamp splitting at 12 bits).

@@ -13,7 +13,7 @@ sheaf_shader(raster_vert raster.vert)
 sheaf_shader(raster_frag raster.frag)
 
 # One scan, many elements: scan_elements.glsl says what each scans.
-foreach(scan COMPACT COMPRESS STARTS SEGMENTED PAIRS LOOSE PLAIN PLAIN_SEGMENTED)
+foreach(scan COMPACT COMPRESS STARTS SEGMENTED PAIRS PLAIN PLAIN_SEGMENTED)
   string(TOLOWER ${scan} stem)
   sheaf_shader(${stem}_reduce scan_reduce.comp SCAN_${scan})
   sheaf_shader(${stem}_spine scan_spine.comp SCAN_${scan})

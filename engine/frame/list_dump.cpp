@@ -86,7 +86,7 @@ void ListDump::list(Recorder& recorder, DumpWriter& writer, const RayList& list,
                                        gpu::RAY_DIRECTION + 2, gpu::RAY_TMAX};
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t slot = slots != 0 ? i : order[i];
-    for (const auto field : fields) rays.push_back(words[slot * gpu::RAY_WORDS + field]);
+    for (const auto field : fields) rays.push_back(words[slot * gpu::RAY_PART + field]);
     hits.push_back(record_of(&rays[rays.size() - 8], found[slot].x, std::bit_cast<float>(found[slot].y)));
   }
   writer.rays(generation, kind, rays, hits);

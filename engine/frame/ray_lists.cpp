@@ -112,8 +112,7 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
     const std::uint64_t nodes = std::uint64_t{m.capacity} / 3 + gpu::MAX_LEVELS + 1;
     m.ray_nodes = Buffer(device, "ray hierarchy", nodes * gpu::RAY_NODE_WORDS * 4);
     const std::uint64_t bundles = std::uint64_t{m.capacity} / gpu::BUNDLE + 1;
-    m.bundle_flags = Buffer(device, "bundle flags", bundles * 4);
-    m.bundle_list = Buffer(device, "bundle list", bundles * 4 * 2);
+    m.loose_bundles = Buffer(device, "loose bundles", bundles * 4);
   }
   return m;
 }

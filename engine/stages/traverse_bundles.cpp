@@ -16,7 +16,7 @@ constexpr std::uint32_t most_effort = 250;
 }  // namespace
 
 TraverseBundles::TraverseBundles(const TraceContext& c)
-    : context_(c), bundles_(c.device, "rays_hierarchy_bundles"), loose_(c.device, "loose"), single_(c, true) {
+    : context_(c), bundles_(c.device, "rays_hierarchy_bundles", lane_constants(c.device)), single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
   const auto lanes = lane_constants(c.device);
   auto make = [&](bool any_hit) {
@@ -35,19 +35,17 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
 
   recorder.stage("rays_hierarchy");
   recorder.bind(ROLE_RAY_NODES, memory.ray_nodes);
-  recorder.bind(ROLE_BUNDLE_FLAGS, memory.bundle_flags);
-  recorder.bind(ROLE_WORK, memory.bundle_list);
+  recorder.bind(ROLE_WORK, memory.loose_bundles);
   const struct {
     std::uint32_t kind;
     float widest;
   } bounds{kind, kind == gpu::KIND_SHADOW ? widest_shadow : widest};
-  recorder.dispatch_indirect(bundles_, bounds, gpu::ARGS_BUNDLE_RUNS);
-  loose_.record(recorder, {kind}, gpu::ARGS_BUNDLE_BLOCKS);
+  recorder.dispatch_indirect(bundles_, bounds, gpu::ARGS_BUNDLES);
 
   recorder.stage("traverse");
   const bool shadow = kind == gpu::KIND_SHADOW;
   const struct { std::uint32_t kind, most_effort; } walk{kind, most_effort};
-  recorder.dispatch_indirect(shadow ? any_ : nearest_, walk, gpu::ARGS_TIGHT);
+  recorder.dispatch_indirect(shadow ? any_ : nearest_, walk, gpu::ARGS_BUNDLES);
   recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_LOOSE);
 }
 

@@ -17,7 +17,6 @@ class TraverseBundles final : public Tracer {
   TraceContext context_;
   SortRays sort_;
   Kernel bundles_, nearest_, any_;
-  Scan loose_;
   SingleKernels single_;
 };
 

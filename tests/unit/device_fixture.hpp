@@ -148,7 +148,8 @@ inline std::vector<float> pack_rays(const std::vector<TestRay>& rays, std::uint3
   std::vector<float> words(std::size_t{gpu::RAY_WORDS + 1} * capacity, 0.0F);
   auto put = [&](std::uint32_t word, std::size_t slot, auto value) {
     static_assert(sizeof(value) == 4);
-    std::memcpy(&words[slot * gpu::RAY_WORDS + word], &value, 4);
+    const std::size_t part = word / gpu::RAY_PART * capacity + slot;
+    std::memcpy(&words[part * gpu::RAY_PART + word % gpu::RAY_PART], &value, 4);
   };
   for (std::size_t i = 0; i < capacity; ++i) {
     const TestRay ray = i < rays.size() ? rays[i] : TestRay{};

@@ -135,8 +135,7 @@ void expect_list_args(const Words& args, std::uint32_t rays) {
   set_args(expected, gpu::ARGS_RAYS, blocks_of(rays, gpu::GROUP));
   set_args(expected, gpu::ARGS_BLOCKS, blocks_of(rays));
   set_args(expected, gpu::ARGS_BUNDLES, blocks_of(rays, gpu::BUNDLE));
-  set_args(expected, gpu::ARGS_BUNDLE_RUNS, blocks_of(rays, gpu::BUNDLE * gpu::GROUP));
-  set_args(expected, gpu::ARGS_BUNDLE_BLOCKS, blocks_of(rays, gpu::BUNDLE * gpu::SCAN_BLOCK));
+  set_args(expected, gpu::ARGS_LOOSE, 0);
   set_args(expected, gpu::ARGS_ONE, std::min(rays, 1U));
   EXPECT_EQ(args, expected);
 }
@@ -217,35 +216,6 @@ TEST(DeviceCompact, SurvivingPairsKeepTheirOrder) {
       ASSERT_EQ(words.view<std::uint32_t>()[gpu::COUNT_SURVIVORS], expected.size()) << name << ' ' << n;
       ASSERT_TRUE(next.values() == expected) << name << ' ' << n;
       (void)sums.values();
-    }
-}
-
-TEST(DeviceCompact, LooseBundlesAndTightOnesEachKeepTheirOrder) {
-  const Scan scan(device(), "loose");
-  for (const auto n : boundary_sizes())
-    for (const auto& [name, is_loose] : choices(n)) {
-      Words counters(gpu::COUNT_WORDS), arguments(std::size_t{gpu::ARGS_COUNT} * 3);
-      counters[gpu::COUNT_RAYS + gpu::KIND_REFLECTION] = n * gpu::BUNDLE - (n > 0 ? n % gpu::BUNDLE : 0);
-      set_args(arguments, gpu::ARGS_BUNDLE_BLOCKS, blocks_of(n));
-      const Buffer flags = buffer_of(is_loose), words = buffer_of(counters), args = buffer_of(arguments);
-      const Output<std::uint32_t> work(2ULL * n), sums(blocks_of(n));
-      Recorder recorder(device());
-      recorder.bind(ROLE_BUNDLE_FLAGS, flags);
-      recorder.bind(ROLE_WORK, work.buffer());
-      recorder.bind(ROLE_COUNTERS, words);
-      recorder.bind(ROLE_ARGS, args);
-      recorder.bind(ROLE_BLOCK_SUMS, sums.buffer());
-      scan.record(recorder, {gpu::KIND_REFLECTION}, gpu::ARGS_BUNDLE_BLOCKS);
-      recorder.submit_and_wait();
-      const Words got = work.values(), loose_ones = places_of(is_loose, 1), tight_ones = places_of(is_loose, 0);
-      const auto loose = static_cast<std::uint32_t>(loose_ones.size());
-      ASSERT_TRUE(std::equal(loose_ones.begin(), loose_ones.end(), got.begin())) << name << ' ' << n;
-      ASSERT_TRUE(std::equal(tight_ones.begin(), tight_ones.end(), got.begin() + n)) << name << ' ' << n;
-      ASSERT_EQ(words.view<std::uint32_t>()[gpu::COUNT_LOOSE], loose) << name << ' ' << n;
-      ASSERT_EQ(words.view<std::uint32_t>()[gpu::COUNT_TIGHT], n - loose) << name << ' ' << n;
-      set_args(arguments, gpu::ARGS_LOOSE, loose);
-      set_args(arguments, gpu::ARGS_TIGHT, n - loose);
-      ASSERT_EQ(read<std::uint32_t>(recorder, args, arguments.size()), arguments) << name << ' ' << n;
     }
 }
 
