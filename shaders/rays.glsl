@@ -43,7 +43,9 @@ RayPairs ray_pairs(uvec2 list, uint slot, uint word) {
 }
 RayPixel ray_pixel(uvec2 list, uint slot) { return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot))); }
 
-vec2 load_ray_pair(uvec2 list, uint slot, uint word) { return uintBitsToFloat(unpack32(ray_pairs(list, slot, word).pair[word % RAY_PART / 2u])); }
+vec2 load_ray_pair(uvec2 list, uint slot, uint word) {
+  return uintBitsToFloat(unpack32(ray_pairs(list, slot, word).pair[word % RAY_PART / 2u]));
+}
 void store_ray_pair(uvec2 list, uint slot, uint word, float first, float second) {
   ray_pairs(list, slot, word).pair[word % RAY_PART / 2u] = pack64(floatBitsToUint(vec2(first, second)));
 }
