@@ -23,7 +23,7 @@ SHEAF_FUNCTION uint dealt(uint group, uint groups, uint workers, uint longest) {
   uint each = groups / workers;
   // The quotient below is half a group or more off a whole number, and two roundings off the true one: less, up to 2^21 groups.
   if (group >= each * workers || groups > (1u << 21)) return group;
-  uint worker = workers == 2u ? uint(group >= each) : to_uint(floor((float(int(group)) + 0.5f) / float(int(each))));
+  uint worker = to_uint(floor((float(int(group)) + 0.5f) / float(int(each))));
   uint order = 0u;
   for (uint k = 1u; k <= longest; ++k) order += uint(each >= (8u << k));
   uint place = group - worker * each, turns = each >> order, in_turns = turns << order;

@@ -31,5 +31,5 @@ void main() {
   float cells = float(push.kind == KIND_SHADOW ? SHADOW_CELLS : CELLS);
   vec2 cell = clamp(floor((along.xy / abs(along.z) * 0.5 + 0.5) * cells), vec2(0), vec2(cells - 1.0));
   // Bits that are lost above join packets, never axes or directions.
-  packet_keys[i] = ((leading * CELLS + uint(cell.x)) * CELLS + uint(cell.y)) * 8u + face;
+  packet_keys[i] = ((leading * CELLS + to_uint(cell.x)) * CELLS + to_uint(cell.y)) * 8u + face;
 }

@@ -64,7 +64,7 @@ void main() {
   ray_nodes[at + 4u] = axis.x;
   ray_nodes[at + 5u] = axis.y;
   ray_nodes[at + 6u] = axis.z;
-  ray_nodes[at + 7u] = loose ? LOOSE_ANGLE : angle * (1.0 + PAD) + PAD;
+  ray_nodes[at + 7u] = angle * (1.0 + PAD) + PAD + (loose ? LOOSE_ANGLE : 0.0);
   ray_nodes[at + 8u] = tmax;
   if (loose) goes_alone(bundle);
 }

@@ -28,6 +28,7 @@ layout(push_constant) uniform Push {
 
 #include "bundle_rays.glsl"
 #include "visit_together.glsl"
+#include "loose.glsl"
 
 Visit visit;  // the same in all lanes
 
@@ -68,8 +69,6 @@ void walk(Beam beam, Cone cone) {
     if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;
   }
 }
-
-#include "loose.glsl"
 
 void main() {
   uint rays_here = counters[COUNT_RAYS + push.kind], bundle = global_group();

@@ -108,6 +108,7 @@ Choice choose_strategy(const Device& device, const std::shared_ptr<DeviceScene>&
   for (int turn = 0; turn < turns; ++turn)
     for (auto& c : contenders) c.sliver_ms = std::min(c.sliver_ms, c.time_of(first, sliver));
   compare(turns);
+  // Where they are close, higher bands tell.
   if (std::abs(bundled_ms / plain_ms - 1) < 0.12 && higher.front().height > bands.front().height) {
     bands = higher;
     compare(2);

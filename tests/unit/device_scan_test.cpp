@@ -153,7 +153,9 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
   list.order = buffer_of(Words(slots));
   Words counters(gpu::COUNT_WORDS), arguments(std::size_t{gpu::ARGS_COUNT} * 3);
   counters[gpu::COUNT_SLOTS + kind] = slots;
+  counters[gpu::COUNT_LOOSE] = 7;  // of the list before
   set_args(arguments, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS, blocks_of(slots));
+  set_args(arguments, gpu::ARGS_LOOSE, 7);
   std::vector<std::uint64_t> stats(gpu::STAT_WORDS);
   stats[kind * gpu::STAT_FIELDS + gpu::STAT_RAYS] = 1ULL << 40U;  // of generations before
   gpu::Frame frame{};
@@ -173,6 +175,7 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
     compact.record(recorder, list, kind);
   recorder.submit_and_wait();
   EXPECT_EQ(counter_words.view<std::uint32_t>()[gpu::COUNT_RAYS + kind], expected.size());
+  EXPECT_EQ(counter_words.view<std::uint32_t>()[gpu::COUNT_LOOSE], 0);
   EXPECT_EQ(read<std::uint32_t>(recorder, list.order, expected.size()), expected);
   EXPECT_EQ(stat_words.view<std::uint64_t>()[kind * gpu::STAT_FIELDS], (1ULL << 40U) + expected.size());
   expect_list_args(read<std::uint32_t>(recorder, args, std::size_t{gpu::ARGS_COUNT} * 3),
