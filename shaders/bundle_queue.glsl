@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Hits of a lane's rays that a material may take back wait here: asking materials takes long, and what one lane needs all lanes
 // run, so it is done for many at once.
-const uint LEAF_FILLS = LEAF_TRIANGLES * VECTORS;  // the most that one leaf adds to a lane's queue
-const uint QUEUE = 2u * LEAF_FILLS + LEAF_TRIANGLES * HELD_LEAVES;
+const uint QUEUE = LEAF_TRIANGLES * (2u * HELD_LEAVES);
 uint q_vector[QUEUE], q_triangle[QUEUE];
 float q_t[QUEUE];
 uint queued = 0u;  // of this lane
 
-// For what one more leaf may add: hits, and itself a vector, which are hits to be.
+// For what one more leaf of one vector may add: itself, or hits; what waits are hits to be.
 bool waiting_has_room() {
-  bool full = held > HELD_LEAVES - VECTORS;
-  if (asks_materials()) full = full || queued + LEAF_TRIANGLES * held > QUEUE - LEAF_FILLS;
+  bool full = held == HELD_LEAVES;
+  if (asks_materials()) full = full || queued + LEAF_TRIANGLES * (held + 1u) > QUEUE;
   return !any_lane(full);
 }
 

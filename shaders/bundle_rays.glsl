@@ -28,6 +28,10 @@ Extent extent_of(Extent mine) {
   return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
 }
 
+#include "ray_node.glsl"
+#include "bundle_bound.glsl"
+Spread spread;                                        // of all
+
 Beam load_bundle() {
   [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
     r_triangle[v] = NO_INDEX;
@@ -37,12 +41,18 @@ Beam load_bundle() {
   vectors = (ray_count + LANES - 1u) / LANES;
   Extent own = Extent(vec3(INFINITY), vec3(-INFINITY), vec3(INFINITY), vec3(-INFINITY), INFINITY);
   float own_far = -INFINITY;
+  vec3 dlo = vec3(2), dhi = vec3(-2), sum = vec3(0);
+  float tmax = 0.0;
   [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
     uint k = v * LANES + lane;
     uint slot = load_slot(push.order, first_ray + min(k, ray_count - 1u));  // the last one fills the rest; its extra lanes find nothing
     Ray ray = load_ray(push.rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
     float limit = k < ray_count ? ray.tmax : -INFINITY;
+    dlo = min(dlo, ray.direction);
+    dhi = max(dhi, ray.direction);
+    sum += k < ray_count ? ray.direction : vec3(0);
+    tmax = max(tmax, ray.tmax);
     PUT(r_origin, v, s.origin);
     PUT(r_inverse, v, s.inverse);
     PUT(r_shear, v, vec3(s.sx, s.sy, s.sz));
@@ -63,7 +73,9 @@ Beam load_bundle() {
     }
   }
   if (VECTORS <= LANES && lane >= vectors) vector_beam.farthest = -INFINITY;
-  return make_beam(extent_of(own), max_lanes(own_far));
+  Extent all = extent_of(own);
+  spread = Spread(all.olo, all.ohi, min_lanes(dlo), max_lanes(dhi), sum_lanes(sum), max_lanes(tmax));
+  return make_beam(all, max_lanes(own_far));
 }
 
 // The rays of a vector at work.
@@ -124,35 +136,6 @@ void bound_vector(uint v, float nearest_so_far) {
 }
 
 #include "bundle_leaves.glsl"
-
-void test_vector(uint v, uint leaf, vec3 lo, vec3 hi) {
-  Work w = load_work(v);
-  vec2 range = slab(w.shear, lo, hi);
-  bool enters = range.x <= range.y && range.y >= w.tmin && range.x <= w.best.t;
-  if (v * LANES + lane < ray_count) ++box_tests;
-  uint entering = lanes_that(enters);
-  if (entering == 0u) return;
-  if (worth_waiting(entering)) {
-    if (enters) hold_leaf(v, leaf);
-    return;
-  }
-  for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
-    test_corners(load_triangle_together(triangle), triangle, enters, w);
-  put_found(w);
-  bound_vector(v, w.best.t);
-}
-
-void test_leaf(uint leaf, uint place) {
-  Boxes boxes = load_boxes_together(place / WIDE);
-  vec3 lo, hi;
-  child_box(boxes, place % WIDE, lo, hi);
-  uint todo = VECTORS > LANES ? (1u << vectors) - 1u : lanes_where(beam_enters(vector_beam, lo, hi));
-  while (todo != 0u) {
-    test_vector(lowest_bit(todo), leaf, lo, hi);
-    ++effort;
-    todo &= todo - 1u;
-  }
-}
 
 float farthest_hit() {
   float far = -INFINITY;

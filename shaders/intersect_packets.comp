@@ -47,17 +47,18 @@ uint place_child(uint place) {
 void test_list(Beam beam, uvec2 list) {
   for (uint base = list.x; base < list.y && beam.farthest > -INFINITY; base += LEAVES) {
     uint mine = base + min(lane, LEAVES - 1u);
-    uint place = pairs[min(mine, list.y - 1u)].y & ~CHILD_LEAF, leaf = place_child(place);
+    uint place = pairs[min(mine, list.y - 1u)].y & ~CHILD_LEAF;
     vec3 lo, hi;
     place_box(place, lo, hi);
+    lower_leaf = Leaf(lo, hi, place_child(place));
     bool there = lane < LEAVES && mine < list.y;
     if (there) ++node_tests;
-    uint todo = lanes_where(there && beam_enters(beam, lo, hi));
+    uint entered = lanes_where(there && beam_enters(beam, lo, hi));
+    if (entered == 0u) continue;
+    hand_out_leaves(entered, 0u);
     while (todo != 0u) {
-      uint k = lowest_bit(todo);
-      todo &= todo - 1u;
       if (!waiting_has_room()) settle_waiting();
-      test_leaf(subgroupShuffle(leaf, k), subgroupShuffle(place, k));
+      test_vector();
     }
     beam.farthest = farthest_hit();
   }

@@ -96,7 +96,7 @@ const int LEAST_TOGETHER = 3, MOST_SAVED = 16;
 // Where the rays part, `w` is where each goes on alone, which it is not otherwise.
 void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Tests tests) {
   w.visit.octant = subgroupBroadcast(w.visit.octant, 0u);
-  uint node = 0u, place;
+  uint node = 0u;
   int saved = MOST_SAVED;
   while (node != CHILD_EMPTY && saved >= 0) {
     uint entered = entered_by(load_boxes_together(node), ray, s, best.t);
@@ -110,7 +110,7 @@ void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade
       if (ANY_HIT && !any_lane(best.t > -INFINITY)) break;
     }
     saved = min(saved + int(8u * bitCount(lanes_where(entered != 0u)) / LANES) - LEAST_TOGETHER, MOST_SAVED);
-    node = next_together(w.visit, place);
+    node = next_together(w.visit);
   }
   if (asks_materials()) settle_all(ray, best, shade);
   w.current = node == CHILD_EMPTY || !(best.t > -INFINITY) ? CHILD_EMPTY : node;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `hybrid`: one subgroup walks the object hierarchy with a bundle of rays (bundle_rays.glsl). Lanes
-// are a node's children when boxes are tested.
+// Traverse and intersect for `hybrid`: one subgroup bounds a bundle of rays (bundle_rays.glsl) and walks the object hierarchy with it.
+// Lanes are a node's children when boxes are tested. Bundles that are too wide to be walked as one, and those that turn out to be, go to
+// a list.
 //
 // Exact: see beam.glsl; the cone test is padded. Control flow as in single_ray.glsl.
 #define COMPUTE
@@ -18,11 +19,11 @@
 #include "ray_node.glsl"
 #include "visit.glsl"
 #include "beam.glsl"
-BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_WORK, writeonly, uint, work);
 layout(push_constant) uniform Push {
   uint kind;
   uint most_effort;
+  float widest;  // half-angle past which a bundle is loose
   PUSH_LIST
 } push;
 
@@ -32,7 +33,7 @@ layout(push_constant) uniform Push {
 
 Visit visit;  // the same in all lanes
 
-// Children that some ray of the bundle may enter, a bit each.
+// Children that some ray of the bundle may enter, a bit each; their boxes stay with the lanes.
 uint entered_children(Beam beam, Cone cone, uint node) {
   Boxes boxes = load_boxes_together(node);
   uint entered = 0u;
@@ -40,33 +41,46 @@ uint entered_children(Beam beam, Cone cone, uint node) {
     uint c = base + lane;
     vec3 lo, hi;
     child_box(boxes, c & 7u, lo, hi);
+    if (base == 0u)
+      lower_leaf = Leaf(lo, hi, 0u);
+    else
+      upper_leaf = Leaf(lo, hi, 0u);
     bool there = c < WIDE && (boxes.grid.there & (1u << c)) != 0u;
     if (there) ++node_tests;
     bool enters = there && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
     entered |= lanes_where(enters) << base;
   }
-  return entered;
+  return entered & 255u;
+}
+
+void visit_node(Beam beam, Cone cone, uint node) {
+  uint entered = entered_children(beam, cone, node);
+  if (entered == 0u) return;
+  hold_children(node);
+  uint entered_leaves = entered & leaf_children();
+  visit_together(visit, node, entered & ~entered_leaves);
+  if (entered_leaves == 0u) return;
+  lower_leaf.word = children.x;
+  upper_leaf.word = children.y;
+  hand_out_leaves(in_visiting_order(entered_leaves, visit.octant), visit.octant);
 }
 
 void walk(Beam beam, Cone cone) {
-  uint current = 0u, place = 0u;
-  while (current != CHILD_EMPTY) {
-    while (current != CHILD_EMPTY && waiting_has_room()) {
-      while (is_node(current)) {
-        if (++effort > push.most_effort) return;
-        visit_together(visit, current, entered_children(beam, cone, current) & 255u);
-        current = next_together(visit, place);
-      }
-      while (!is_node(current) && current != CHILD_EMPTY && waiting_has_room()) {
-        test_leaf(current, place);
-        beam.farthest = farthest_hit();
-        current = next_together(visit, place);
-        if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;  // every shadow ray is blocked
-      }
+  uint current = 0u;
+  bool room = true;
+  while (current != CHILD_EMPTY || todo != 0u) {
+    while (todo == 0u && current != CHILD_EMPTY) {
+      if (++effort > push.most_effort) return;
+      visit_node(beam, cone, current);
+      current = next_together(visit);
     }
-    settle_waiting();
+    while (todo != 0u && waiting_has_room()) test_vector();
+    if (todo != 0u || current == CHILD_EMPTY) settle_waiting();
     beam.farthest = farthest_hit();
-    if (!(beam.farthest > -INFINITY)) current = CHILD_EMPTY;
+    if (!(beam.farthest > -INFINITY)) {  // every shadow ray is blocked
+      current = CHILD_EMPTY;
+      todo = 0u;
+    }
   }
 }
 
@@ -74,14 +88,14 @@ void main() {
   uint rays_here = counters[COUNT_RAYS + push.kind], bundle = global_group();
   first_ray = bundle * BUNDLE;
   if (first_ray >= rays_here) return;
-  RayNode node = LOAD_RAY_NODE(ray_nodes, bundle * RAY_NODE_WORDS);
-  if (node.angle >= LOOSE_ANGLE) return;
   lane = gl_SubgroupInvocationID;
   ray_count = min(BUNDLE, rays_here - first_ray);
-  visit = Visit(0u, 0u, octant_of(node.axis));
   Beam beam = load_bundle();
-  walk(beam, cone_of(node));
-  if (effort > push.most_effort) {  // what it found is found again
+  RayNode node = bundle_bound(spread);
+  bool loose = ray_count < 8u || is_loose(node, spread, push.widest);
+  visit = Visit(0u, 0u, octant_of(node.axis));
+  if (!loose) walk(beam, cone_of(node));
+  if (loose || effort > push.most_effort) {  // what it found is found again
     if (lane == 0u) goes_alone(bundle);
   } else
     [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);

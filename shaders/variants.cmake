@@ -2,7 +2,7 @@
 # The table of shader variants: name, source, defines.
 foreach(stem animate_vertices animate_triangles objects_refit objects_spheres generate_primary generate_begin generate
              hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill rays_hierarchy
-             rays_hierarchy_bundles traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
+             traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
              resolve layers objects_boxes traverse_query packets_keys packets_frustums walk_begin pairs_open pairs_ranges
              intersect_packets classify_bounds classify_keys classify_begin classify_frustums classify_stops
              classify_candidates classify_cuts dump_triangles raster_spans)

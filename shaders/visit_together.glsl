@@ -41,8 +41,7 @@ uint stacked_group(uint depth) {
 }
 
 // As next_child().
-uint next_together(inout Visit v, out uint place) {
-  place = 0u;
+uint next_together(inout Visit v) {
   if ((v.group & 255u) == 0u) {
     if (v.depth == 0u) return CHILD_EMPTY;
     --v.depth;
@@ -50,7 +49,6 @@ uint next_together(inout Visit v, out uint place) {
   }
   hold_children(v.group >> 8);
   uint slot = lowest_bit(v.group & 255u) ^ v.octant;
-  place = (v.group >> 8) * WIDE + slot;
   v.group &= v.group - 1u;
   return child_together(slot);
 }

@@ -148,11 +148,11 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   plan.object_hierarchy = strategy == Strategy::bvh || strategy == Strategy::hybrid || plan.packets;
   if (!plan.object_hierarchy)
     leave("object hierarchy", std::string("strategy ") + name_of(strategy) + " does not walk one");
-  plan.ray_hierarchy = strategy == Strategy::hybrid || strategy == Strategy::rsh || strategy == Strategy::crsh;
-  if (!plan.ray_hierarchy && !plan.packets)
+  plan.ray_hierarchy = strategy == Strategy::rsh || strategy == Strategy::crsh;
+  plan.bundles = strategy == Strategy::hybrid;
+  if (!plan.ray_hierarchy && !plan.packets && !plan.bundles)
     leave("rays_hierarchy", std::string("strategy ") + name_of(strategy) + " has none");
   const bool by_key = strategy == Strategy::crsh || strategy == Strategy::frustum;
-  plan.bundles = strategy == Strategy::hybrid;
   plan.sorts =
       plan.classes || (by_key && settings.sort != SortPolicy::off) || (plan.bundles && settings.sort == SortPolicy::on);
   if (!plan.sorts)

@@ -111,9 +111,9 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
     // Levels 1 and up of arity 4: a third of the rays, and at most one node more a level.
     const std::uint64_t nodes = std::uint64_t{m.capacity} / 3 + gpu::MAX_LEVELS + 1;
     m.ray_nodes = Buffer(device, "ray hierarchy", nodes * gpu::RAY_NODE_WORDS * 4);
-    const std::uint64_t bundles = std::uint64_t{m.capacity} / gpu::BUNDLE + 1;
-    m.loose_bundles = Buffer(device, "loose bundles", bundles * 4);
   }
+  if (plan.bundles)
+    m.loose_bundles = Buffer(device, "loose bundles", (std::uint64_t{m.capacity} / gpu::BUNDLE + 1) * 4);
   return m;
 }
 

@@ -15,8 +15,7 @@ constexpr std::uint32_t most_effort = 250;
 
 }  // namespace
 
-TraverseBundles::TraverseBundles(const TraceContext& c)
-    : context_(c), bundles_(c.device, "rays_hierarchy_bundles", lane_constants(c.device)), single_(c, true) {
+TraverseBundles::TraverseBundles(const TraceContext& c) : context_(c), single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
   const auto lanes = lane_constants(c.device);
   auto make = [&](bool any_hit) {
@@ -29,22 +28,16 @@ TraverseBundles::TraverseBundles(const TraceContext& c)
 }
 
 void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
-  const RayMemory& memory = context_.memory;
   list.bind(recorder);
   if (context_.plan.sorts && kind != gpu::KIND_PRIMARY) sort_.record(recorder, context_, kind);
 
-  recorder.stage("rays_hierarchy");
-  recorder.bind(ROLE_RAY_NODES, memory.ray_nodes);
-  recorder.bind(ROLE_WORK, memory.loose_bundles);
-  const struct {
-    std::uint32_t kind;
-    float widest;
-  } bounds{kind, kind == gpu::KIND_SHADOW ? widest_shadow : widest};
-  recorder.dispatch_indirect(bundles_, bounds, gpu::ARGS_BUNDLES);
-
   recorder.stage("traverse");
+  recorder.bind(ROLE_WORK, context_.memory.loose_bundles);
   const bool shadow = kind == gpu::KIND_SHADOW;
-  const struct { std::uint32_t kind, most_effort; } walk{kind, most_effort};
+  const struct {
+    std::uint32_t kind, most_effort;
+    float widest;
+  } walk{kind, most_effort, shadow ? widest_shadow : widest};
   recorder.dispatch_indirect(shadow ? any_ : nearest_, walk, gpu::ARGS_BUNDLES);
   recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_LOOSE);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strategy `hybrid`: rays sorted where it pays, a hierarchy level of bundles, tight bundles walked through the object
-// hierarchy by a subgroup each, the rays of loose ones one a lane.
+// Strategy `hybrid`: rays sorted where it pays; bundles bounded and, if tight, walked through the object hierarchy by a
+// subgroup each, the rays of loose ones one a lane.
 #pragma once
 
 #include "stages/sort.hpp"
@@ -16,7 +16,7 @@ class TraverseBundles final : public Tracer {
  private:
   TraceContext context_;
   SortRays sort_;
-  Kernel bundles_, nearest_, any_;
+  Kernel nearest_, any_;
   SingleKernels single_;
 };
 

@@ -19,6 +19,7 @@ struct Surface {
   vec3 geometric;
 };
 
+#include "bundle_bound.inc"
 #include "offset.inc"
 #include "spheres.inc"
 
@@ -54,6 +55,26 @@ Node node_over(const Node* below, int count) {
   }
   node.angle = angle * (1.0F + PAD) + PAD;
   return node;
+}
+
+// What the lanes of bundle_rays.glsl gather, in the order of eight of them.
+Bundle bundle_over(const std::vector<Node>& rays, float widest) {
+  using namespace glm;
+  gl::Spread s(vec3(INFINITY), vec3(-INFINITY), vec3(2), vec3(-2), vec3(0), 0.0F);
+  vec3 lanes[8] = {};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    s.olo = min(s.olo, rays[i].centre);
+    s.ohi = max(s.ohi, rays[i].centre);
+    s.dlo = min(s.dlo, rays[i].axis);
+    s.dhi = max(s.dhi, rays[i].axis);
+    lanes[i % 8] += rays[i].axis;
+    s.tmax = std::max(s.tmax, rays[i].tmax);
+  }
+  for (const int step : {1, 2, 4})
+    for (int k = 0; k < 8; k += 2 * step) lanes[k] += lanes[k + step];
+  s.sum = lanes[0];
+  const gl::RayNode n = gl::bundle_bound(s);
+  return {{n.centre, n.radius, n.axis, n.angle, n.tmax}, gl::is_loose(n, s, widest)};
 }
 
 bool meets_sphere(const Node& node, const glm::vec3& centre, float radius) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace sheaf::test::shader {
 
@@ -25,6 +26,12 @@ struct Range {
 
 /// One node over a few rays or nodes, as rays_hierarchy.comp makes it.
 Node node_over(const Node* below, int count);
+/// The node over a bundle, and whether it is too wide (`widest`: half-angle) to be walked as one.
+struct Bundle {
+  Node node;
+  bool loose;
+};
+Bundle bundle_over(const std::vector<Node>& rays, float widest);
 bool meets_sphere(const Node& node, const glm::vec3& centre, float radius);
 float angle_between(const glm::vec3& a, const glm::vec3& b);
 

@@ -76,7 +76,9 @@ template <typename T>
 class Output {
  public:
   explicit Output(std::size_t count)
-      : count_(count), buffer_(device(), "test output", count * sizeof(T) + guard_bytes, Buffer::Kind::upload) {
+      : count_(count),
+        buffer_(device(), "test output", count * sizeof(T) + guard_bytes, Buffer::Kind::upload,
+                vk::BufferUsageFlagBits::eShaderDeviceAddress) {
     std::memset(buffer_.mapped(), filler, buffer_.bytes());
   }
   [[nodiscard]] const Buffer& buffer() const { return buffer_; }

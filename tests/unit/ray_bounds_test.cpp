@@ -70,6 +70,55 @@ bool ray_meets_sphere(const shader::Node& ray, const Vec& centre, Real radius) {
   return glm::length(v - d * along) <= radius;
 }
 
+TEST(Bounds, BundlesHoldTheirRaysAndWideOnesAreLoose) {
+  Search search("bundle of rays (radius against the farthest origin)");
+  over_decades(4000, [&](Dice& dice, int decade, Real size) {
+    const auto rays = random_rays(dice, size, 1 + static_cast<std::size_t>(dice.range(0, 64)));
+    const auto [node, loose] = shader::bundle_over(rays, 0.1F);
+    search.add(decade, holds_rays(node, rays, 0, rays.size()));
+    if (node.angle > 0.1001F) {
+      EXPECT_TRUE(loose);
+    }
+    if (node.angle < 0.0249F) {
+      EXPECT_FALSE(loose);
+    }
+    Real farthest = 0;
+    for (const auto& ray : rays) farthest = std::max(farthest, glm::length(Vec(ray.centre) - Vec(node.centre)));
+    if (farthest > 0) search.looseness(decade, node.radius / farthest - 1);
+  });
+  search.report();
+}
+
+TEST(Bounds, BundlesOfOneDirectionAndOfAllAreBounded) {
+  const auto bundle_of = [](std::size_t count, auto&& ray) {
+    std::vector<shader::Node> rays(count);
+    for (std::size_t i = 0; i < count; ++i) ray(rays[i], static_cast<int>(i));
+    const auto bundle = shader::bundle_over(rays, 0.1F);
+    EXPECT_TRUE(holds_rays(bundle.node, rays, 0, count));
+    return bundle;
+  };
+  const vec3 axis = unit_float({0.3L, -0.5L, 0.8L});
+  for (const std::size_t count : {1U, 2U, 8U, 63U, 64U}) {
+    const auto equal = bundle_of(count, [&](auto& ray, int) { ray.centre = {1, 2, 3}, ray.axis = axis; });
+    EXPECT_EQ(equal.node.radius, 0);
+    EXPECT_LT(equal.node.angle, 2e-6F);
+    EXPECT_FALSE(equal.loose);
+    const auto ulps = bundle_of(count, [&](auto& ray, int i) {
+      ray.centre = {i % 2 == 0 ? 1e7F : std::nextafter(1e7F, 1e9F), 1, 1e-7F};
+      ray.axis = axis;
+      if (i % 2 == 1) ray.axis.x = std::nextafter(axis.x, 2.0F);
+    });
+    EXPECT_FALSE(ulps.loose);
+    if (count < 2) continue;
+    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis = i % 2 == 0 ? axis : -axis; }).loose);
+    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis[i % 3] = i % 6 < 3 ? 1.0F : -1.0F; }).loose);
+    // Within the widest, but to both sides of an axis: no slab bounds it.
+    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) {
+                  ray.axis = unit_float({i % 2 == 0 ? 0.05L : -0.05L, 0, 1});
+                }).loose);
+  }
+}
+
 TEST(Bounds, NoSphereIsCulledThatARayMeets) {
   Search search("node against sphere (radius that is culled, short of the distance, for one ray)");
   over_decades(12000, [&](Dice& dice, int decade, Real size) {
