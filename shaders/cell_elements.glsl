@@ -90,7 +90,8 @@ uint scan_count() { return counters[COUNT_WALK_RAYS]; }
 uint scan_load(uint i) {
   uint ray = counters[COUNT_WALK_RAY] + i, above = cell_above(ray);
   if (cells[above].x == ray) return 1u;
-  return cell_stops[above] == 0u && cuts[ray] <= push.halvings ? 1u : 0u;
+  uint cut = cuts[ray], state = cell_stops[above];
+  return state != CELL_STOPS && (cut & (CUT_SMALL - 1u)) <= push.halvings && (cut < CUT_SMALL || state == CELL_CROWDED) ? 1u : 0u;
 }
 void scan_store(uint i, uint before, uint own) {
   uint ray = counters[COUNT_WALK_RAY] + i, above = cell_above(ray);

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Subdivision (R 3.1, 3.2): where in the order of keys cells begin, and at which halving. Neighbours are parted by the first halving
-// at which their keys differ, unless the cell that it halves has no more than CLASS_RAYS rays: such a cell stays whole, and so do
-// all below it. Faces are always parted.
+// at which their keys differ. Where the cell that it halves has no more than CLASS_RAYS rays the cut is marked: such a cell stays whole, and
+// so do all below it, while its candidates are few. Faces are always parted.
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -33,7 +33,7 @@ void main() {
   if (parted != 0u) {
     uint bits = uint(findMSB(parted)) + 1u, shared_key = key >> bits;
     cut = bits > CLASS_HALVINGS ? 0u : CLASS_HALVINGS + 1u - bits;
-    if (cut != 0u && reach(i, count, shared_key, bits, true) + reach(i, count, shared_key, bits, false) <= CLASS_RAYS) cut = NEVER;
+    if (cut != 0u && reach(i, count, shared_key, bits, true) + reach(i, count, shared_key, bits, false) <= CLASS_RAYS) cut |= CUT_SMALL;
   }
   cuts[i] = cut;
 }

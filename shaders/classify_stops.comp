@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Which cells are not divided, however many rays they have: those whose candidates are but a few leaves.
+// Which cells are not divided, however many rays they have: those whose candidates are but a few leaves. And which are, however few: those
+// with more candidates than rays that keep together have (R 3.2: by candidates as well as by rays).
 #define COMPUTE
 #include "common.glsl"
 #include "rays.glsl"
@@ -9,7 +10,10 @@
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 BUFFER(ROLE_CELL_STOPS, writeonly, uint, cell_stops);
-layout(push_constant) uniform Push { uint room; } push;
+layout(push_constant) uniform Push {
+  uint room;
+  uint many;
+} push;
 
 void main() {
   uint i = global_index();
@@ -20,5 +24,5 @@ void main() {
     uint at = counters[COUNT_PAIR_HALF] * push.room;
     for (uint k = list.x; k < list.y; ++k) stops = stops && (pairs[at + k].y & CHILD_LEAF) != 0u;
   }
-  cell_stops[i] = stops ? 1u : 0u;
+  cell_stops[i] = stops ? CELL_STOPS : list.y - list.x > push.many ? CELL_CROWDED : 0u;
 }

@@ -148,9 +148,12 @@ SHEAF_CONST RAY_NODE_WORDS = 9u;
 // Frustums of packets and cells (frustum_memory.glsl), and what their pairs with nodes entered: a bit a child in visiting order,
 // and the octant of that order; or that the pair has a leaf, and is kept.
 SHEAF_CONST FRUSTUM_WORDS = 12u;
-// Classes of rays: face, then so many halvings, are the key. A cell with no more candidates than CLASS_FEW, all leaves, stays whole.
-SHEAF_CONST CLASS_HALVINGS = 20u;
+// Classes of rays: face, then so many halvings, are the key. A cell with no more candidates than CLASS_FEW, all leaves, stays whole;
+// one that is crowded is divided where cuts are marked CUT_SMALL as well.
+SHEAF_CONST CLASS_HALVINGS = 25u;
 SHEAF_CONST CLASS_FEW = 4u;
+SHEAF_CONST CUT_SMALL = 256u;
+SHEAF_CONST CELL_STOPS = 1u, CELL_CROWDED = 2u;
 SHEAF_CONST PAIR_KEPT = 256u;
 SHEAF_CONST PAIR_OCTANT = 9u;  // its lowest bit
 
