@@ -18,6 +18,15 @@ void accumulate(uint pixel, uint channel, float v) {
   if (fixed_value != 0ul) atomicAdd(sums_of(pixel).channel[channel], fixed_value);
 }
 
+// Where no other ray of the dispatch is the pixel's. What the sums were before the first sample does not matter.
+void add_alone(uint pixel, vec4 v, uint channels, bool first) {
+  PixelSums sums = sums_of(pixel);
+  uint64_t sum[4] = uint64_t[4](to_fixed(v.r), to_fixed(v.g), to_fixed(v.b), to_fixed(v.a));
+  if (!first)
+    for (uint c = 0u; c < channels; ++c) sum[c] += sums.channel[c];
+  for (uint c = 0u; c < channels; ++c) sums.channel[c] = sum[c];
+}
+
 void accumulate_rgb(uint pixel, vec3 v) {
   accumulate(pixel, 0u, v.r);
   accumulate(pixel, 1u, v.g);

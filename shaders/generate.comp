@@ -25,6 +25,7 @@ layout(push_constant) uniform Push {
   uint kind;        // of the parents
   uint last;        // 1: no further generation
   uint direct;      // 1: the parents are the camera's rays, and were not written: raster knows what they hit
+  uint sums;        // SUMS_…, of the pixels
   PUSH_LIST
   uvec2 shadow_rays;
   uvec2 reflection_rays;
@@ -199,6 +200,15 @@ vec3 absorbed(Parent p, Surface s, Material m, float t) {
               stops.z > 0.0 ? exp2(-stops.z * t) : 1.0);
 }
 
+void add_own(uint pixel, vec3 light, float coverage) {
+  if (push.sums != SUMS_SHARED) {
+    add_alone(pixel, vec4(light, coverage), 4u, push.sums == SUMS_UNSET);
+    return;
+  }
+  accumulate_rgb(pixel, light);
+  accumulate(pixel, 3u, coverage);
+}
+
 void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
@@ -207,7 +217,6 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   if (VOLUMES) p.weight *= absorbed(p, s, m, t);
   float alpha = (m.flags & MATERIAL_BLEND) != 0u ? clamp(s.base.a, 0.0, 1.0) : 1.0;
   if (alpha < 1.0) s.transmission = 0.0;  // one straight ray goes on; see SHADING.md, 1
-  accumulate(p.pixel, 3u, p.coverage * alpha);
   vec3 weight = p.weight * alpha;
   bool unlit = (m.flags & MATERIAL_UNLIT) != 0u;
   vec3 v = -p.ray.direction;
@@ -216,12 +225,9 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   vec3 f0 = mix(vec3(r0 * r0), s.base.rgb, s.metallic);
   float q = max(1.0 - s.roughness / 0.4, 0.0);
   float mirror = q * q;
-  if (unlit) {
-    accumulate_rgb(p.pixel, weight * s.base.rgb);
-  } else {
-    vec3 ambient = ((1.0 - s.metallic) * (1.0 - s.transmission)) * s.base.rgb + (1.0 - mirror) * schlick(f0, nv);
-    accumulate_rgb(p.pixel, weight * (s.emission + frame.environment * ambient * s.occlusion));
-  }
+  vec3 ambient = ((1.0 - s.metallic) * (1.0 - s.transmission)) * s.base.rgb + (1.0 - mirror) * schlick(f0, nv);
+  vec3 own = unlit ? s.base.rgb : s.emission + frame.environment * ambient * s.occlusion;
+  add_own(p.pixel, weight * own, p.coverage * alpha);
   if (SHADOWS)
     for (uint i = 0u; i < frame.lights; ++i) {
       uint shadow_slot = slot + i * parents;
@@ -257,7 +263,7 @@ void main() {
     shade_hit(slot, parents, hit.x, uintBitsToFloat(hit.y), p);
     return;
   }
-  if (!(p.coverage > 0.0)) accumulate_rgb(p.pixel, p.weight * frame.environment);
+  add_own(p.pixel, p.coverage > 0.0 ? vec3(0) : p.weight * frame.environment, 0.0);
   if (SHADOWS)
     for (uint k = 0u; k < frame.lights; ++k) no_ray_shadow(slot + k * parents);
   no_ray_reflection(slot);

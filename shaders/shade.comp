@@ -10,7 +10,10 @@
 #include "counting.glsl"
 BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
 layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;
-layout(push_constant) uniform Push { PUSH_LIST } push;
+layout(push_constant) uniform Push {
+  uint sums;  // SUMS_…, of the pixels
+  PUSH_LIST
+} push;
 
 void main() {
   uint i = global_index();
@@ -24,5 +27,9 @@ void main() {
     ivec3 stops = max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
     light *= exp2(-vec3(stops) / float(OPTICAL_STEP));
   }
-  accumulate_rgb(load_ray_pixel(push.rays, slot), light);
+  uint pixel = load_ray_pixel(push.rays, slot);
+  if (push.sums == SUMS_OWN)
+    add_alone(pixel, vec4(light, 0.0), 3u, false);
+  else
+    accumulate_rgb(pixel, light);
 }

@@ -63,6 +63,10 @@ SHEAF_CONST COUNT_WALK_RAY = 30u;     // rays at work: the first …
 SHEAF_CONST COUNT_WALK_RAYS = 31u;    // … and how many
 SHEAF_CONST COUNT_WORDS = 32u;
 
+// What a dispatch's rays are to the sums of their pixels: several may be for one pixel, no two are, or every pixel has one and the sums do
+// not matter yet.
+SHEAF_CONST SUMS_SHARED = 0u, SUMS_OWN = 1u, SUMS_UNSET = 2u;
+
 // Statistics, 64-bit sums as two words (low, high), a block of STAT_WORDS a kind.
 SHEAF_CONST STAT_RAYS = 0u;
 SHEAF_CONST STAT_HITS = 1u;

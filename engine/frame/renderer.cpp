@@ -209,7 +209,8 @@ void Renderer::render_layers(const FrameRequest& request, const Tile& tile) {
 
 void Renderer::begin_tile(const Tile& tile) {
   recorder_.stage("generate");
-  recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
+  if (!direct())
+    recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);  // the first sample writes them
   recorder_.fill(memory_.stats, 0);
   records_.clear();
   record_pairs_.clear();
@@ -247,7 +248,10 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
   camera_hits(request, batch, tile);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
   if (layers_ && settings_.samples.most == 1) layers_->record(recorder_, memory_, tile.pixels());
-  generate_.secondary(recorder_, memory_, {0, true, settings_.depth == 0, direct()});
+  const std::uint32_t sums = direct() && batch.first == 0 ? gpu::SUMS_UNSET
+                             : one_ray_a_pixel(0)         ? gpu::SUMS_OWN
+                                                          : gpu::SUMS_SHARED;
+  generate_.secondary(recorder_, memory_, {0, true, settings_.depth == 0, direct(), sums});
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();
   for (std::uint32_t g = 1; g <= settings_.depth; ++g) {
@@ -255,7 +259,9 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
     const std::uint32_t from = (g - 1) % 2;
     if (plan_.reflections) trace(memory_.reflection[from], gpu::KIND_REFLECTION, g);
     if (plan_.refractions) trace(memory_.refraction[from], gpu::KIND_REFRACTION, g);
-    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false});
+    // A list each of the first generation: those that one ray a pixel makes of either kind.
+    const std::uint32_t shared = one_ray_a_pixel(g == 1 ? 0 : g) ? gpu::SUMS_OWN : gpu::SUMS_SHARED;
+    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false, shared});
     trace_shadows(g);
     if (g % generations_a_submit != 0 || g == settings_.depth) continue;
     recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);
@@ -291,7 +297,13 @@ void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
 void Renderer::trace_shadows(std::uint32_t generation) {
   if (!plan_.shadows) return;
   trace(memory_.shadow, gpu::KIND_SHADOW, generation);
-  shade_.record(recorder_, memory_);
+  const bool one_each = one_ray_a_pixel(generation) && scene_->lights() == 1;
+  shade_.record(recorder_, memory_, one_each ? gpu::SUMS_OWN : gpu::SUMS_SHARED);
+}
+
+// Of the generation's rays together.
+bool Renderer::one_ray_a_pixel(std::uint32_t generation) const {
+  return !plan_.adaptive && (generation == 0 || !plan_.refractions);
 }
 
 }  // namespace sheaf

@@ -73,6 +73,7 @@ class Renderer {
   void finish_tile(const Tile& tile);
   /// Whether the camera's rays need not be written: what they hit lies in the visibility buffer, and nobody else asks.
   [[nodiscard]] bool direct() const { return raster_ && !layers_ && dump_ == nullptr; }
+  [[nodiscard]] bool one_ray_a_pixel(std::uint32_t generation) const;
   void camera_hits(const FrameRequest& request, const Batch& batch, const Tile& tile);
   [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);

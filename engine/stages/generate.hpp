@@ -17,6 +17,7 @@ class Generate {
     std::uint32_t from;  // lists 0 or 1; unused where they are the camera's rays
     bool primary, last;  // last: no rays but shadow rays follow
     bool direct;         // the camera's rays were rasterised and not written: `primary` is left out
+    std::uint32_t sums;  // gpu::SUMS_…: what the parents of one list are to their pixels
   };
   /// Shades the parents' hits and makes the rays that follow.
   void secondary(Recorder& recorder, const RayMemory& memory, const Parents& parents) const;

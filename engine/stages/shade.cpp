@@ -11,11 +11,10 @@ Shade::Shade(const Device& device, const Features& features, bool counted) {
   shade_ = Kernel(device, "shade", constants);
 }
 
-void Shade::record(Recorder& recorder, const RayMemory& memory) const {
+void Shade::record(Recorder& recorder, const RayMemory& memory, std::uint32_t sums) const {
   recorder.stage("shade");
   memory.shadow.bind(recorder);
-  const std::uint32_t unused = 0;
-  recorder.dispatch_indirect(shade_, unused, gpu::ARGS_RAYS);
+  recorder.dispatch_indirect(shade_, sums, gpu::ARGS_RAYS);
 }
 
 }  // namespace sheaf

@@ -10,7 +10,8 @@ namespace sheaf {
 class Shade {
  public:
   Shade(const Device& device, const Features& features, bool counted);
-  void record(Recorder& recorder, const RayMemory& memory) const;
+  /// `sums`: gpu::SUMS_…, what the list's rays are to their pixels.
+  void record(Recorder& recorder, const RayMemory& memory, std::uint32_t sums) const;
 
  private:
   Kernel shade_;
