@@ -6,11 +6,11 @@ struct Leaf {
   uint word;
 };
 Leaf lower_leaf, upper_leaf;  // of this lane; second: the upper four, where there are but four lanes
-uint leaf_turn;          // the k-th to be visited is in lane k ^ leaf_turn
-uint leaves = 0u;        // entered by the bundle: bit k, the k-th to be visited
-uint own_leaves;         // lane v: those that vector v enters
-uint todo = 0u;          // vectors that enter some
-uint leaves_left = 0u;   // of the first of them, where there was no room for more
+uint leaf_turn;               // the k-th to be visited is in lane k ^ leaf_turn
+uint leaves = 0u;             // entered by the bundle: bit k, the k-th to be visited
+uint own_leaves;              // lane v: those that vector v enters
+uint todo = 0u;               // vectors that enter some
+uint leaves_left = 0u;        // of the first of them, where there was no room for more
 
 // Leaves that few rays of a vector enter wait here, and each lane tests its own: were they tested for the vector at once, most lanes
 // would look on. Where triangles are as small as the distance between rays, that is one lane in eight at work.

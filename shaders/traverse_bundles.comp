@@ -65,12 +65,12 @@ void visit_node(Beam beam, Cone cone, uint node) {
   hand_out_leaves(in_visiting_order(entered_leaves, visit.octant), visit.octant);
 }
 
-void walk(Beam beam, Cone cone) {
+// Whether it came to the end: a bundle that finds too much to look at gives up.
+bool walk(Beam beam, Cone cone) {
   uint current = 0u;
-  bool room = true;
   while (current != CHILD_EMPTY || todo != 0u) {
     while (todo == 0u && current != CHILD_EMPTY) {
-      if (++effort > push.most_effort) return;
+      if (++effort > push.most_effort) return false;
       visit_node(beam, cone, current);
       current = next_together(visit);
     }
@@ -82,6 +82,7 @@ void walk(Beam beam, Cone cone) {
       todo = 0u;
     }
   }
+  return true;
 }
 
 void main() {
@@ -94,11 +95,11 @@ void main() {
   RayNode node = bundle_bound(spread);
   bool loose = ray_count < 8u || is_loose(node, spread, push.widest);
   visit = Visit(0u, 0u, octant_of(node.axis));
-  if (!loose) walk(beam, cone_of(node));
-  if (loose || effort > push.most_effort) {  // what it found is found again
-    if (lane == 0u) goes_alone(bundle);
-  } else
+  if (!loose && walk(beam, cone_of(node))) {
     [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
+  } else if (lane == 0u) {
+    goes_alone(bundle);  // what it found is found again
+  }
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
   count_tests(push.kind, STAT_RAY_BOX, box_tests);
