@@ -3,7 +3,8 @@
 // five-dimensional space, halved only where there are rays; a cell's candidates are nodes of the object hierarchy,
 // taken over from the cell above and made anew after five halvings, until they are leaves.
 //
-// A cell stops being divided at a few leaves, or at CLASS_RAYS rays with few candidates for its depth. Classes need an order: --sort has no say.
+// A cell stops being divided at a few leaves, or at CLASS_RAYS rays with few candidates for its depth. Classes need an
+// order: --sort has no say.
 #pragma once
 
 #include "stages/cell_walk.hpp"
