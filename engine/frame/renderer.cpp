@@ -161,43 +161,6 @@ bool Renderer::render_tile(const FrameRequest& request, const Tile& tile, Render
   return true;
 }
 
-// The samples of this round of the tile's active pixels, as many at once as the lists hold.
-bool Renderer::render_round(const FrameRequest& request, const Tile& tile, RenderedFrame& out) {
-  const std::uint32_t active = list_active_pixels(tile);
-  if (active == 0) return true;
-  const std::uint32_t first = adaptive_->first_sample(), all = adaptive_->samples();
-  if (layers_ && first == 0) render_layers(request, tile);
-  std::uint32_t at_once = std::clamp(memory_.tile_pixels / active, 1U, all);
-  for (std::uint32_t done = 0; done < all;) {
-    const std::uint32_t samples = std::min(at_once, all - done);
-    if (render_batch(request, {first + done, samples, samples * active}, tile, done + samples == all)) {
-      done += samples;
-      continue;
-    }
-    if (dump_ != nullptr) dump_->rewind();
-    if (at_once == 1) return false;
-    at_once /= 2;
-    done = 0;
-    begin_tile(tile);
-  }
-  store_round(tile);
-  store_counts(tile, out);
-  return true;
-}
-
-std::uint32_t Renderer::list_active_pixels(const Tile& tile) {
-  const auto list = memory_.active_pixels.view<std::uint32_t>();
-  std::uint32_t active = 0;
-  constexpr std::uint32_t side = 8;  // block by block, so that neighbours in the list are neighbours in the picture
-  for (std::uint32_t top = 0; top < tile.height; top += side)
-    for (std::uint32_t left = 0; left < tile.width; left += side)
-      for (std::uint32_t y = top; y < std::min(top + side, tile.height); ++y)
-        for (std::uint32_t x = left; x < std::min(left + side, tile.width); ++x)
-          if (adaptive_->active(std::size_t{tile.y + y} * settings_.width + tile.x + x))
-            list[active++] = y * tile.width + x;
-  return active;
-}
-
 // The layers are what the rays through the pixels' centres see.
 void Renderer::render_layers(const FrameRequest& request, const Tile& tile) {
   if (settings_.samples.most == 1) return;  // then the one sample is that ray
@@ -209,8 +172,8 @@ void Renderer::render_layers(const FrameRequest& request, const Tile& tile) {
 
 void Renderer::begin_tile(const Tile& tile) {
   recorder_.stage("generate");
-  if (!direct())
-    recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);  // the first sample writes them
+  if (!direct())  // else the first sample writes them
+    recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
   recorder_.fill(memory_.stats, 0);
   records_.clear();
   record_pairs_.clear();
@@ -259,9 +222,9 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
     const std::uint32_t from = (g - 1) % 2;
     if (plan_.reflections) trace(memory_.reflection[from], gpu::KIND_REFLECTION, g);
     if (plan_.refractions) trace(memory_.refraction[from], gpu::KIND_REFRACTION, g);
-    // A list each of the first generation: those that one ray a pixel makes of either kind.
-    const std::uint32_t shared = one_ray_a_pixel(g == 1 ? 0 : g) ? gpu::SUMS_OWN : gpu::SUMS_SHARED;
-    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false, shared});
+    // Of either kind, a list each, a ray makes one.
+    const std::uint32_t parents = one_ray_a_pixel(g - 1) ? gpu::SUMS_OWN : gpu::SUMS_SHARED;
+    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false, parents});
     trace_shadows(g);
     if (g % generations_a_submit != 0 || g == settings_.depth) continue;
     recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a finished tile leaves on the host: pixels, layers, counts.
 #include <algorithm>
-#include <cmath>
 
 #include "frame/renderer.hpp"
 #include "stages/sort.hpp"
@@ -65,26 +64,6 @@ void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
     std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(y) * tile.width * 4, std::size_t{tile.width} * 4,
                 out.layers.rgba.begin() + (static_cast<std::ptrdiff_t>(tile.y + y) * settings_.width + tile.x) * 4);
   store_counts(tile, out);
-}
-
-void Renderer::store_round(const Tile& tile) {
-  const auto sums = memory_.accumulation_readback.view<std::uint64_t>();
-  for (std::uint32_t i = 0; i < tile.pixels(); ++i) {
-    const std::size_t pixel = std::size_t{tile.y + i / tile.width} * settings_.width + tile.x + i % tile.width;
-    if (!adaptive_->active(pixel)) continue;
-    glm::dvec4 sum(0);
-    for (int c = 0; c < 4; ++c)
-      sum[c] = std::ldexp(static_cast<double>(sums[std::size_t{i} * 4 + static_cast<std::size_t>(c)]), -32);
-    adaptive_->add(pixel, sum);
-  }
-}
-
-void Renderer::store_adaptive(RenderedFrame& out) const {
-  for (std::size_t pixel = 0; pixel < out.layers.rgba.size() / 4; ++pixel) {
-    const glm::dvec4 mean = adaptive_->mean(pixel);
-    for (int c = 0; c < 3; ++c) out.layers.rgba[pixel * 4 + static_cast<std::size_t>(c)] = static_cast<float>(mean[c]);
-    out.layers.rgba[pixel * 4 + 3] = std::min(static_cast<float>(mean.a), 1.0F);
-  }
 }
 
 void Renderer::store_counts(const Tile& tile, RenderedFrame& out) {
