@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The node over a bundle (R 4.3): bounded at once from the boxes of its rays' origins and directions, tighter than unions of unions.
+#include "ray_node.glsl"
+
 struct Spread {
   vec3 olo, ohi;       // of origins
   vec3 dlo, dhi, sum;  // of directions

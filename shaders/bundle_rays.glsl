@@ -5,6 +5,7 @@
 layout(constant_id = SPEC_LANES) const uint LANES = 8;    // of a subgroup, which is the workgroup
 layout(constant_id = SPEC_VECTORS) const uint VECTORS = 8;  // BUNDLE / LANES
 #include "lanes.glsl"
+#include "bundle_bound.glsl"
 
 // A lane's ray of each vector.
 vec3 r_origin[VECTORS], r_inverse[VECTORS], r_shear[VECTORS];
@@ -13,6 +14,7 @@ float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, âˆ
 uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
 ivec3 r_stops[VECTORS];
 Beam vector_beam;                                     // lane v: of vector v
+Spread spread;                                        // of the bundle
 uint lane, ray_count, first_ray;
 uint vectors;                                         // that hold rays
 uint box_tests = 0u, triangle_tests = 0u, node_tests = 0u;
@@ -27,10 +29,6 @@ uint held = 0u;                                       // leaves that wait, of th
 Extent extent_of(Extent mine) {
   return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
 }
-
-#include "ray_node.glsl"
-#include "bundle_bound.glsl"
-Spread spread;                                        // of all
 
 Beam load_bundle() {
   [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {

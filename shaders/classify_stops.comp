@@ -12,7 +12,7 @@ BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 BUFFER(ROLE_CELL_STOPS, writeonly, uint, cell_stops);
 layout(push_constant) uniform Push {
   uint room;
-  uint many;
+  uint many;  // candidates: a cell with more is crowded
 } push;
 
 void main() {

@@ -16,7 +16,6 @@
 #include "lists.glsl"
 #include "args.glsl"
 #include "counting.glsl"
-#include "ray_node.glsl"
 #include "visit.glsl"
 #include "beam.glsl"
 BUFFER(ROLE_WORK, writeonly, uint, work);
