@@ -87,9 +87,24 @@ def embree_of(embree: dict[str, Any], what: str) -> float:
 
 def in_place(result: dict[str, Any], what: str) -> float:
     """The same frame with Embree finding the hits: our own shading, animation and sums, at what they take here."""
+    return untraced(result, what) + embree_of(result["embree"], what)
+
+
+def untraced(result: dict[str, Any], what: str) -> float:
+    """What auto's frame takes beside its hits."""
     auto = result["engine"]["auto"]
     rest = 1 - auto["tracing_ms"]["median"] / auto["wall_ms"]["median"]
-    return of(result, "auto", what) * rest + embree_of(result["embree"], what)
+    return of(result, "auto", what) * rest
+
+
+def one_ray_a_call(result: dict[str, Any]) -> str:
+    """Embree without packets: no target, but what a program that calls it for each ray waits for."""
+    embree = result["embree"]
+    single = embree["update_ms"]["median"] + sum(batch["single_ms"] for batch in embree["batches"].values())
+    if "auto" not in result["engine"]:
+        return f"{single:8.1f}"
+    place = (untraced(result, "wall_ms") + single) / of(result, "auto", "wall_ms")
+    return f"{single:8.1f}; in the tracer's place / auto {place:.2f}"
 
 
 def count_lines(where: str, counted: dict[str, Any], meshes: int) -> Iterator[Line]:
@@ -179,6 +194,7 @@ def print_frames(data: dict[str, Any]) -> None:
                 e = result["embree"]
                 update = f"update {e['update_ms']['median']:.0f} ({e['update']})"
                 print(f"  {'embree, hits only':18} {numbers(e['whole_ms'], e)}; {update}")
+                print(f"  {'  one ray a call':18} {one_ray_a_call(result)}")
             for strategy, r in result["engine"].items():
                 label = f"auto ({r['chosen']})" if strategy == "auto" else strategy
                 most = sorted(r["stages_ms"].items(), key=lambda s: -s[1])
