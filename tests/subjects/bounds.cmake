@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Paddings and offsets of the shaders, run on the CPU in single precision, against long double. The shaders' own text is
+# Paddings, offsets and whole numbers of the shaders, run on the CPU in single precision, against long double. The shaders' own text is
 # compiled: constants are floats there, and nothing is contracted.
 set(bounds_folder ${CMAKE_CURRENT_BINARY_DIR}/bounds)
 function(shader_as_cpp name shader)
@@ -11,6 +11,7 @@ function(shader_as_cpp name shader)
   set(bounds_sources ${bounds_sources} ${output} PARENT_SCOPE)
 endfunction()
 shader_as_cpp(ray_node ray_node.glsl)
+shader_as_cpp(convert convert.glsl)
 shader_as_cpp(bundle_bound bundle_bound.glsl)
 shader_as_cpp(triangle triangle.glsl)
 shader_as_cpp(offset surface.glsl "-DFROM=float next_up")
@@ -19,7 +20,7 @@ shader_as_cpp(spheres objects_spheres.comp "-DFROM=vec4 triangle_sphere" "-DUPTO
 add_library(sheaf_bounds_shaders OBJECT unit/bounds_shaders.cpp ${bounds_sources})
 target_include_directories(sheaf_bounds_shaders PRIVATE ${bounds_folder})
 target_link_libraries(sheaf_bounds_shaders PUBLIC glm::glm)
-foreach(subject ray_bounds triangle_bounds)
+foreach(subject ray_bounds triangle_bounds convert)
   sheaf_test(${subject}_test sheaf_bounds_shaders)
 endforeach()
 set_source_files_properties(unit/bounds_shaders.cpp PROPERTIES

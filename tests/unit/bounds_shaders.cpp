@@ -10,6 +10,7 @@ namespace gl {
 using namespace glm;
 using uint = unsigned int;
 
+#include "convert.inc"
 #include "ray_node.inc"
 #include "triangle.inc"
 
@@ -28,6 +29,9 @@ struct Surface {
 gl::RayNode as_shader(const Node& n) { return gl::RayNode(n.centre, n.radius, n.axis, n.angle, n.tmax); }
 
 }  // namespace
+
+glm::uvec2 divided(unsigned n, unsigned d) { return gl::divided(n, d); }
+unsigned lowest_bit(unsigned v) { return gl::lowest_bit(v); }
 
 Node node_over(const Node* below, int count) {
   using namespace glm;

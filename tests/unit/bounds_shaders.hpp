@@ -24,6 +24,10 @@ struct Range {
   float entry, leave;
 };
 
+/// Quotient and remainder, and the lowest bit set (convert.glsl).
+glm::uvec2 divided(unsigned n, unsigned d);
+unsigned lowest_bit(unsigned v);
+
 /// One node over a few rays or nodes, as rays_hierarchy.comp makes it.
 Node node_over(const Node* below, int count);
 /// The node over a bundle, and whether it is too wide (`widest`: half-angle) to be walked as one.
