@@ -19,7 +19,7 @@ void main() {
   if (block >= push.blocks) return;
   uvec2 job = work[block];
   Instance i = instances[job.x];
-  uint local = job.y + gl_LocalInvocationID.x;
+  uint local = job.y + local_index();
   if (local >= i.triangle_count) return;
   uint t = i.first_triangle + local;
   uint flags = materials[i.material].flags;

@@ -42,7 +42,7 @@ void main() {
   if (block >= push.blocks) return;
   uvec2 job = work[block];
   Deform d = deforms[job.x];
-  uint v = job.y + gl_LocalInvocationID.x;
+  uint v = job.y + local_index();
   if (v >= d.vertex_count) return;
   vec3 p = morphed(load_position(d.first_vertex + v), d, d.morph_first, v);
   vec3 n = morphed(load_normal(d.first_vertex + v), d, d.morph_normals, v);

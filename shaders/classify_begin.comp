@@ -16,7 +16,7 @@ layout(push_constant) uniform Push {
 } push;
 
 void main() {
-  if (gl_LocalInvocationID.x != 0u) return;
+  if (local_index() != 0u) return;
   uint all = counters[COUNT_RAYS + push.kind], rays_here = push.first < all ? min(push.most, all - push.first) : 0u;
   counters[COUNT_WALK_FIRST] = 0u;
   counters[COUNT_WALK_RAY] = push.first;

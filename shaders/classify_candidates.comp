@@ -19,7 +19,7 @@ layout(push_constant) uniform Push {
 void main() {
   uint cell = global_group();
   if (cell >= counters[COUNT_WALK_CELLS]) return;
-  uint half_read = 1u - counters[COUNT_PAIR_HALF], lane = gl_LocalInvocationID.x;
+  uint half_read = 1u - counters[COUNT_PAIR_HALF], lane = local_index();
   uint to = counters[COUNT_PAIR_HALF] * push.room + cell_offsets[cell];
   if (push.root != 0u) {
     if (lane == 0u) pairs[to] = uvec2(cell, 0u);

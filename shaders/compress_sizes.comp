@@ -10,7 +10,7 @@ layout(push_constant) uniform Push { uint kind; } push;
 
 void main() {
   uint count = counters[COUNT_CHUNKS];
-  uint first = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  uint first = global_group() * SCAN_BLOCK + local_index() * SCAN_RUN;
   for (uint i = first; i < min(first + SCAN_RUN, count); ++i)
     chunks[i].z = (i + 1u < count ? chunks[i + 1u].y : counters[COUNT_RAYS + push.kind]) - chunks[i].y;
 }

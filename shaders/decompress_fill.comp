@@ -10,6 +10,6 @@ layout(push_constant) uniform Push { uint kind; } push;
 
 void main() {
   uint count = counters[COUNT_RAYS + push.kind];
-  uint first = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  uint first = global_group() * SCAN_BLOCK + local_index() * SCAN_RUN;
   for (uint i = first; i < min(first + SCAN_RUN, count); ++i) skeleton[i] = 1u;
 }

@@ -15,7 +15,7 @@ layout(push_constant) uniform Push {
 } push;
 
 void main() {
-  if (gl_LocalInvocationID.x != 0u) return;
+  if (local_index() != 0u) return;
   if (push.direct != 0u) {
     counters[COUNT_RAYS + KIND_PRIMARY] = frame.batch_rays;
     stats[KIND_PRIMARY * STAT_FIELDS + STAT_RAYS] += uint64_t(frame.batch_rays);

@@ -15,11 +15,11 @@ layout(push_constant) uniform Push {
 
 void main() {
   if (push.reset != 0u) {
-    if (gl_LocalInvocationID.x < 6u) counters[COUNT_BOUNDS + gl_LocalInvocationID.x] = gl_LocalInvocationID.x < 3u ? 0xFFFFFFFFu : 0u;
+    if (local_index() < 6u) counters[COUNT_BOUNDS + local_index()] = local_index() < 3u ? 0xFFFFFFFFu : 0u;
     return;
   }
   uint count = counters[COUNT_RAYS + push.kind];
-  uint block = global_group() * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  uint block = global_group() * SCAN_BLOCK + local_index() * SCAN_RUN;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint i = block; i < min(block + SCAN_RUN, count); ++i) {
     vec3 o = load_ray(push.rays, load_slot(push.order, i)).origin;

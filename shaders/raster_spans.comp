@@ -218,7 +218,7 @@ void main() {
   // Neighbours go to different threads: what is seen large is so for many in a row.
   uint blocks = group_count() / push.bands, first = dealt(group_number() / push.bands, blocks, WORKERS, 0u) * gl_WorkGroupSize.x;
   if (group_number() >= blocks * push.bands || first >= frame.triangles) return;
-  uint triangle = first + gl_LocalInvocationID.x;
+  uint triangle = first + local_index();
   bool there = triangle < frame.triangles;
   triangle = min(triangle, frame.triangles - 1u);
   screen = screen_of(group_number() % push.bands);

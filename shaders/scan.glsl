@@ -14,12 +14,12 @@ uint scan_join(uint left, uint right) {
 
 // What lies before this invocation in its workgroup, and (out) the whole workgroup's.
 uint scan_workgroup(uint own, out uint total) {
-  scan_shared[gl_LocalInvocationID.x] = own;
+  scan_shared[local_index()] = own;
   barrier();
   uint before = 0u;
-  for (uint i = 0u; i < gl_LocalInvocationID.x; ++i) before = scan_join(before, scan_shared[i]);
+  for (uint i = 0u; i < local_index(); ++i) before = scan_join(before, scan_shared[i]);
   total = before;
-  for (uint i = gl_LocalInvocationID.x; i < SCAN_GROUP; ++i) total = scan_join(total, scan_shared[i]);
+  for (uint i = local_index(); i < SCAN_GROUP; ++i) total = scan_join(total, scan_shared[i]);
   barrier();
   return before;
 }

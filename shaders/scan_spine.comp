@@ -10,7 +10,7 @@
 void main() {
   uint blocks = groups_of(scan_count(), SCAN_BLOCK);
   uint run = groups_of(blocks, SCAN_GROUP);
-  uint first = gl_LocalInvocationID.x * run, last = min(first + run, blocks);
+  uint first = local_index() * run, last = min(first + run, blocks);
   uint sum = 0u;
   for (uint i = first; i < last; ++i) sum = scan_join(sum, block_sums[i]);
   uint total;
@@ -20,5 +20,5 @@ void main() {
     block_sums[i] = before;
     before = scan_join(before, own);
   }
-  if (gl_LocalInvocationID.x == 0u) scan_total(total);
+  if (local_index() == 0u) scan_total(total);
 }

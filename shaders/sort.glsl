@@ -13,7 +13,7 @@ uint digit_of(uint i) { return (chunks[i].x >> push.shift) & (RADIX - 1u); }
 uint block_count() { return (counters[COUNT_CHUNKS] + SCAN_BLOCK - 1u) / SCAN_BLOCK; }
 
 void count_own_digits(uint first, uint last) {
-  for (uint d = 0u; d < RADIX; ++d) own_counts[d * SCAN_GROUP + gl_LocalInvocationID.x] = 0u;
-  for (uint i = first; i < last; ++i) ++own_counts[digit_of(i) * SCAN_GROUP + gl_LocalInvocationID.x];
+  for (uint d = 0u; d < RADIX; ++d) own_counts[d * SCAN_GROUP + local_index()] = 0u;
+  for (uint i = first; i < last; ++i) ++own_counts[digit_of(i) * SCAN_GROUP + local_index()];
   barrier();
 }

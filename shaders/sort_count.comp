@@ -7,9 +7,9 @@
 
 void main() {
   uint block = global_group(), count = counters[COUNT_CHUNKS];
-  uint first = block * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN;
+  uint first = block * SCAN_BLOCK + local_index() * SCAN_RUN;
   count_own_digits(first, min(first + SCAN_RUN, count));
-  uint d = gl_LocalInvocationID.x;
+  uint d = local_index();
   if (d >= RADIX || block >= block_count()) return;
   uint sum = 0u;
   for (uint i = 0u; i < SCAN_GROUP; ++i) sum += own_counts[d * SCAN_GROUP + i];

@@ -7,9 +7,9 @@
 
 void main() {
   uint block = global_group(), count = counters[COUNT_CHUNKS];
-  uint first = block * SCAN_BLOCK + gl_LocalInvocationID.x * SCAN_RUN, last = min(first + SCAN_RUN, count);
+  uint first = block * SCAN_BLOCK + local_index() * SCAN_RUN, last = min(first + SCAN_RUN, count);
   count_own_digits(first, last);
-  uint d = gl_LocalInvocationID.x;
+  uint d = local_index();
   if (d < RADIX && block < block_count()) {  // counts become places
     uint at = digit_counts[d * block_count() + block];
     for (uint i = 0u; i < SCAN_GROUP; ++i) {
@@ -20,7 +20,7 @@ void main() {
   }
   barrier();
   for (uint i = first; i < last; ++i) {
-    uint cell = digit_of(i) * SCAN_GROUP + gl_LocalInvocationID.x;
+    uint cell = digit_of(i) * SCAN_GROUP + local_index();
     chunks_sorted[own_counts[cell]++] = chunks[i];
   }
 }

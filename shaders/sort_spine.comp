@@ -8,13 +8,13 @@
 void main() {  // one workgroup
   uint entries = RADIX * block_count();
   uint run = (entries + SCAN_GROUP - 1u) / SCAN_GROUP;
-  uint first = gl_LocalInvocationID.x * run, last = min(first + run, entries);
+  uint first = local_index() * run, last = min(first + run, entries);
   uint sum = 0u;
   for (uint i = first; i < last; ++i) sum += digit_counts[i];
-  own_counts[gl_LocalInvocationID.x] = sum;
+  own_counts[local_index()] = sum;
   barrier();
   uint before = 0u;
-  for (uint i = 0u; i < gl_LocalInvocationID.x; ++i) before += own_counts[i];
+  for (uint i = 0u; i < local_index(); ++i) before += own_counts[i];
   for (uint i = first; i < last; ++i) {
     uint own = digit_counts[i];
     digit_counts[i] = before;

@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
 } push;
 
 void main() {
-  if (gl_LocalInvocationID.x != 0u) return;
+  if (local_index() != 0u) return;
   uint all = counters[COUNT_CELLS], cells = push.first < all ? min(push.most, all - push.first) : 0u;
   bool fits = cells <= push.room;
   counters[COUNT_WALK_FIRST] = push.first;

@@ -26,7 +26,7 @@ struct DeviceLimits {
   std::uint32_t groups_x = 65535;
   float timestamp_ns = 1;
   bool cpu = false;
-  std::uint32_t workers = 1;  // threads of a CPU device, between which it divides a dispatch (shaders/dealing.h)
+  std::uint32_t workers = 0;  // threads of a CPU device, between which it divides a dispatch (shaders/dealing.h)
   bool ray_query = false;
 };
 
