@@ -14,7 +14,6 @@
 #include "accumulate.glsl"
 #include "lists.glsl"
 #include "counting.glsl"
-BUFFER(ROLE_LIGHTS, readonly, Light, lights);
 
 layout(constant_id = SPEC_SHADOWS) const bool SHADOWS = true;
 layout(constant_id = SPEC_REFLECTIONS) const bool REFLECTIONS = true;
@@ -33,6 +32,18 @@ layout(push_constant) uniform Push {
 } push;
 
 #include "parents.glsl"
+
+// All lanes are active.
+Light light_together(uint index) {
+  uvec2 p[LIGHT_PAIRS];
+  if (TOGETHER) {
+    LOAD_TOGETHER(p, LIGHT_PAIRS, frame.lights_at, 8u * LIGHT_PAIRS * index);
+  } else {
+    LOAD_PAIRS(p, LIGHT_PAIRS, frame.lights_at, 8u * LIGHT_PAIRS * index);
+  }
+  vec4 place = floats(p[0], p[1]), way = floats(p[2], p[3]), shine = floats(p[4], p[5]);
+  return Light(place.xyz, floatBitsToUint(place.w), way.xyz, way.w, shine.xyz, shine.w, floats(p[6]).x, 0u);
+}
 
 float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
 
@@ -87,8 +98,7 @@ void no_ray_refraction(uint slot) {
   if (REFRACTIONS) store_no_ray(push.refraction_rays, slot);
 }
 
-void make_shadow_ray(uint slot, uint index, Surface s, vec3 weight, vec3 f0, vec3 v, uint pixel) {
-  Light light = lights[index];
+void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight, vec3 f0, vec3 v, uint pixel) {
   vec3 l;
   float distance;
   vec3 arriving = light_arriving(light, s.point, l, distance);
@@ -209,7 +219,27 @@ void add_own(uint pixel, vec3 light, float coverage) {
   accumulate(pixel, 3u, coverage);
 }
 
-void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
+// The rays that go on from a surface, light's aside.
+void make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight, float alpha, Parent p, float mirror, vec3 f0) {
+  bool unlit = (m.flags & MATERIAL_UNLIT) != 0u;
+  float nv = clamp(dot(s.normal, -p.ray.direction), 1e-4, 1.0);
+  if (REFRACTIONS && s.transmission > 0.0 && !unlit) {
+    make_transmitted_rays(slot, s, m, t, weight, p, mirror, nv);
+    return;
+  }
+  if (REFRACTIONS && alpha < 1.0)
+    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel,
+                        cone_after(p, s, t, 1.0, 0.0));
+  else
+    no_ray_refraction(slot);
+  if (REFLECTIONS && !unlit)
+    make_reflection_ray(slot, s, t, weight * (mirror * schlick(f0, nv)), p);
+  else
+    no_ray_reflection(slot);
+}
+
+// `there`: a lane without a hit only helps to read.
+void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool there) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
   Material m;
@@ -227,42 +257,32 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p) {
   float mirror = q * q;
   vec3 ambient = ((1.0 - s.metallic) * (1.0 - s.transmission)) * s.base.rgb + (1.0 - mirror) * schlick(f0, nv);
   vec3 own = unlit ? s.base.rgb : s.emission + frame.environment * ambient * s.occlusion;
-  add_own(p.pixel, weight * own, p.coverage * alpha);
+  if (there) add_own(p.pixel, weight * own, p.coverage * alpha);
   if (SHADOWS)
     for (uint i = 0u; i < frame.lights; ++i) {
+      Light light = light_together(i);
+      if (!there) continue;
       uint shadow_slot = slot + i * parents;
       if (unlit)
         no_ray_shadow(shadow_slot);
       else
-        make_shadow_ray(shadow_slot, i, s, weight, f0, v, p.pixel);
+        make_shadow_ray(shadow_slot, light, i, s, weight, f0, v, p.pixel);
     }
-  if (REFRACTIONS && s.transmission > 0.0 && !unlit) {
-    make_transmitted_rays(slot, s, m, t, weight, p, mirror, nv);
-    return;
-  }
-  if (REFRACTIONS && alpha < 1.0)
-    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel,
-                        cone_after(p, s, t, 1.0, 0.0));
-  else
-    no_ray_refraction(slot);
-  if (REFLECTIONS && !unlit)
-    make_reflection_ray(slot, s, t, weight * (mirror * schlick(f0, nv)), p);
-  else
-    no_ray_reflection(slot);
+  if (there) make_secondary_rays(slot, s, m, t, weight, alpha, p, mirror, f0);
 }
 
 void main() {
-  uint i = global_index();
-  if (i >= counters[COUNT_RAYS + push.kind]) return;
+  uint i = global_index(), rays = counters[COUNT_RAYS + push.kind];
+  bool there = i < rays;
+  i = min(i, rays - 1u);  // lanes past the last help to read
   uint parents = counters[COUNT_PARENTS];
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
   uvec2 hit;
   Parent p = RASTER && push.direct != 0u ? camera_parent(i, hit) : load_parent(i, hit);
-  count_tests(push.kind, STAT_HITS, hit.x != NO_INDEX ? 1u : 0u);
-  if (hit.x != NO_INDEX) {
-    shade_hit(slot, parents, hit.x, uintBitsToFloat(hit.y), p);
-    return;
-  }
+  bool hits = there && hit.x != NO_INDEX;
+  count_tests(push.kind, STAT_HITS, hits ? 1u : 0u);
+  if (goes_on(hits)) shade_hit(slot, parents, stand_in(hit.x, hits), uintBitsToFloat(hit.y), p, hits);
+  if (hits || !there) return;
   add_own(p.pixel, p.coverage > 0.0 ? vec3(0) : p.weight * frame.environment, 0.0);
   if (SHADOWS)
     for (uint k = 0u; k < frame.lights; ++k) no_ray_shadow(slot + k * parents);

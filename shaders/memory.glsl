@@ -5,6 +5,7 @@
 #ifndef SHEAF_MEMORY_GLSL
 #define SHEAF_MEMORY_GLSL
 #extension GL_EXT_buffer_reference : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 layout(constant_id = SPEC_POSED) const bool POSED = false;  // triangles are posed whenever they are read: only their last word is kept
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs { uint64_t pair[TRIANGLE_WORDS / 2]; };
@@ -29,53 +30,67 @@ vec3 load_dynamic(uint i) { return OneVec3(pack64(frame.dynamic_at) + uint64_t(i
 vec4 load_tangent(uint i) { return OneVec4(pack64(frame.tangents_at) + uint64_t(i * 16u)).v; }
 vec4 load_color(uint i) { return OneVec4(pack64(frame.colors_at) + uint64_t(i * 16u)).v; }
 
-// Words 2k … 2k + 3 of a structure.
-vec4 load_four(uvec2 buffer_at, uint offset, uint k) {
-  WordPairs words = WordPairs(pack64(buffer_at) + uint64_t(offset));
-  return uintBitsToFloat(uvec4(unpack32(words.pair[k]), unpack32(words.pair[k + 1u])));
-}
 uvec2 load_pair(uvec2 buffer_at, uint offset, uint k) { return unpack32(WordPairs(pack64(buffer_at) + uint64_t(offset)).pair[k]); }
 
-Instance load_instance(uint index) {
-  uint at = index * (4u * INSTANCE_WORDS);
+// The first of a structure's pairs, of a lane's own structure. (What lanes may share: looks_together.glsl.)
+#define LOAD_PAIRS(pairs, count, buffer_at, offset) \
+  [[unroll]] for (uint k_ = 0u; k_ < (count); ++k_) pairs[k_] = load_pair(buffer_at, offset, k_)
+
+vec2 floats(uvec2 pair) { return uintBitsToFloat(pair); }
+vec4 floats(uvec2 first, uvec2 second) { return uintBitsToFloat(uvec4(first, second)); }
+
+const uint INSTANCE_PAIRS = INSTANCE_WORDS / 2u, MATERIAL_PAIRS = MATERIAL_USES / 2u, USE_PAIRS = USE_WORDS / 2u;  // a material's own
+
+uint instance_offset(uint index) { return index * (4u * INSTANCE_WORDS); }
+uint material_offset(uint index) { return index * (4u * MATERIAL_WORDS); }
+uint use_offset(uint material, uint place) { return material_offset(material) + 4u * (MATERIAL_USES + place * USE_WORDS); }
+
+Instance unpack_instance(uvec2 p[INSTANCE_PAIRS]) {
   vec4 f[5];
-  for (uint k = 0u; k < 5u; ++k) f[k] = load_four(frame.instances_at, at, 2u * k);
-  uvec2 p[7];
-  for (uint k = 0u; k < 7u; ++k) p[k] = load_pair(frame.instances_at, at, 10u + k);
+  for (uint k = 0u; k < 5u; ++k) f[k] = floats(p[2u * k], p[2u * k + 1u]);
   return Instance(f[0].xyz, vec3(f[0].w, f[1].xy), vec3(f[1].zw, f[2].x), f[2].yzw, f[3].xyz, vec3(f[3].w, f[4].xy),
-                  vec3(f[4].zw, uintBitsToFloat(p[0].x)), uintBitsToFloat(p[0].y), p[1].x, p[1].y, p[2].x, p[2].y, p[3].x, p[3].y,
-                  p[4].x, p[4].y, p[5].x, p[5].y, p[6].x, 0u);
+                  vec3(f[4].zw, floats(p[10]).x), floats(p[10]).y, p[11].x, p[11].y, p[12].x, p[12].y, p[13].x, p[13].y,
+                  p[14].x, p[14].y, p[15].x, p[15].y, p[16].x, 0u);
 }
 
 // Without its textures: see load_use.
-Material load_material(uint index) {
-  uint at = index * (4u * MATERIAL_WORDS);
-  vec4 f[4];
-  for (uint k = 0u; k < 4u; ++k) f[k] = load_four(frame.materials_at, at, 2u * k);
-  uvec2 volume_id = load_pair(frame.materials_at, at, 8u);
+Material unpack_material(uvec2 p[MATERIAL_PAIRS]) {
   Material m;
-  m.base_color = f[0];
-  m.emissive = f[1].xyz;
-  m.metallic = f[1].w;
-  m.roughness = f[2].x;
-  m.alpha_cutoff = f[2].y;
-  m.transmission = f[2].z;
-  m.ior = f[2].w;
-  m.absorption = f[3].xyz;
-  m.flags = floatBitsToUint(f[3].w);
-  m.volume = volume_id.x;
-  m.id = volume_id.y;
+  vec4 emissive = floats(p[2], p[3]), way = floats(p[4], p[5]), absorption = floats(p[6], p[7]);
+  m.base_color = floats(p[0], p[1]);
+  m.emissive = emissive.xyz;
+  m.metallic = emissive.w;
+  m.roughness = way.x;
+  m.alpha_cutoff = way.y;
+  m.transmission = way.z;
+  m.ior = way.w;
+  m.absorption = absorption.xyz;
+  m.flags = floatBitsToUint(absorption.w);
+  m.volume = p[8].x;
+  m.id = p[8].y;
   return m;
 }
 
+TextureUse unpack_use(uvec2 p[USE_PAIRS]) {
+  return TextureUse(floats(p[0]), floats(p[1]), floats(p[2]), floats(p[3]).x, p[3].y, p[4].x, p[4].y, p[5].x, p[5].y);
+}
+
+Instance load_instance(uint index) {
+  uvec2 p[INSTANCE_PAIRS];
+  LOAD_PAIRS(p, INSTANCE_PAIRS, frame.instances_at, instance_offset(index));
+  return unpack_instance(p);
+}
+
+Material load_material(uint index) {
+  uvec2 p[MATERIAL_PAIRS];
+  LOAD_PAIRS(p, MATERIAL_PAIRS, frame.materials_at, material_offset(index));
+  return unpack_material(p);
+}
+
 TextureUse load_use(uint material, uint place) {
-  uint at = 4u * (material * MATERIAL_WORDS + MATERIAL_USES + place * USE_WORDS);
-  vec4 a = load_four(frame.materials_at, at, 0u);
-  vec2 turn = uintBitsToFloat(load_pair(frame.materials_at, at, 2u));
-  uvec2 strength_flags = load_pair(frame.materials_at, at, 3u), first_width = load_pair(frame.materials_at, at, 4u),
-        height_levels = load_pair(frame.materials_at, at, 5u);
-  return TextureUse(a.xy, a.zw, turn, uintBitsToFloat(strength_flags.x), strength_flags.y, first_width.x, first_width.y,
-                    height_levels.x, height_levels.y);
+  uvec2 p[USE_PAIRS];
+  LOAD_PAIRS(p, USE_PAIRS, frame.materials_at, use_offset(material, place));
+  return unpack_use(p);
 }
 
 struct Corners {

@@ -196,6 +196,7 @@ SHEAF_CONST INSTANCE_WORDS = 34u;
 SHEAF_CONST USE_WORDS = 12u;
 SHEAF_CONST MATERIAL_USES = 18u;  // where they begin
 SHEAF_CONST MATERIAL_WORDS = MATERIAL_USES + TEXTURES * USE_WORDS;
+SHEAF_CONST LIGHT_PAIRS = 7u;
 
 struct TextureUse {
   vec2 offset;
@@ -255,6 +256,7 @@ struct Light {
   vec3 radiance;    // color · intensity
   float spot_scale;
   float spot_offset;
+  uint unused;      // whole pairs of words, as the structures above
 };
 
 struct Frame {      // per frame and batch of samples
@@ -296,6 +298,7 @@ struct Frame {      // per frame and batch of samples
   uvec2 texels_at;
   uvec2 instances_at;
   uvec2 materials_at;
+  uvec2 lights_at;
   uvec2 sums_at;
 };
 
@@ -318,6 +321,7 @@ struct Deform {     // one deforming instance's vertices
 static_assert(sizeof(TextureUse) == 4 * USE_WORDS);
 static_assert(sizeof(Material) == 4 * MATERIAL_WORDS);
 static_assert(sizeof(Instance) == 4 * INSTANCE_WORDS);
+static_assert(sizeof(Light) == 8 * LIGHT_PAIRS);
 }  // namespace sheaf::gpu
 #endif
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Everything a hit needs to know about the surface there (SHADING.md, Geometry and Material).
 #include "attributes.glsl"
+#include "looks_together.glsl"
 
 layout(constant_id = SPEC_TEXTURED_NORMALS) const bool TEXTURED_NORMALS = true;
 
@@ -34,7 +35,7 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
   return size > 0.0 && size < INFINITY ? v / size : otherwise;
 }
 
-vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, vec3 mapped) {
+vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
@@ -42,7 +43,6 @@ vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, vec3 map
                       : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
   n = safe_normalize(n, geometric);
   if (!TEXTURED_NORMALS || instance.tangent == NO_INDEX) return n;
-  TextureUse use = load_use(instance.material, TEXTURE_NORMAL);
   if ((use.flags & TEXTURE_HERE) == 0u) return n;
   uvec3 w = v + instance.tangent;
   vec4 first_tangent = load_tangent(w.x);
@@ -99,11 +99,37 @@ float curvature_of(Instance instance, uvec3 v, vec3 b, Slopes s, vec3 along, vec
   return abs(curvature) < INFINITY ? curvature : 0.0;  // false for a NaN: no normal
 }
 
+// All of a material's textures, each its mean over the footprint, and how the normals' and the occlusion's are used.
+struct Texels {
+  vec4 of[TEXTURES];
+  TextureUse normal, occlusion;
+};
+
+Texels look_up_filtered(SharedLooks looks, TexturePoint p) {
+  Texels texels;
+  for (uint k = 0u; k < TEXTURES; ++k) texels.of[k] = vec4(1);
+  texels.normal.flags = 0u;
+  texels.occlusion.strength = 0.0;
+  if (!TEXTURED) return texels;
+  [[dont_unroll]] for (uint k = 0u; k < TEXTURES; ++k) {
+    TextureUse use = use_together(looks, k);
+    if (k == TEXTURE_NORMAL) texels.normal = use;
+    if (k == TEXTURE_OCCLUSION) texels.occlusion = use;
+    if ((use.flags & TEXTURE_HERE) == 0u) continue;
+    UvFootprint f = p.uv0;
+    if ((use.flags & TEXTURE_UV1) != 0u) f = p.uv1;
+    f = UvFootprint(turn_uv(use, f.at) + use.offset, turn_uv(use, f.along), turn_uv(use, f.across));
+    texels.of[k] = sample_filtered(use, f, is_color(k));
+  }
+  return texels;
+}
+
+// All lanes are active (looks_together.glsl).
 Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Material material) {
   Corners corners = load_triangle(triangle);
-  Looks looks = looks_of(instance_of(corners));
-  Instance instance = looks.instance;
-  material = looks.material;
+  SharedLooks looks = looks_together(instance_of(corners));
+  Instance instance = looks.looks.instance;
+  material = looks.looks.material;
   uvec3 v = triangle_vertices(instance, triangle);
   vec3 v0 = corners.a, v1 = corners.b, v2 = corners.c;
   Surface s;
@@ -124,21 +150,20 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
                             interpolate_uv_footprint(instance.uv1, v, b, slopes.along * abs(width), slopes.across * abs(width)));
     if (width != 0.0) s.curvature = curvature_of(instance, v, b, slopes, along, across);
   }
-  vec4 texels[TEXTURES];
-  look_up_filtered(instance.material, point_uv, texels);
-  vec3 n = shading_normal(instance, v, b, g, texels[TEXTURE_NORMAL].xyz);
+  Texels texels = look_up_filtered(looks, point_uv);
+  vec3 n = shading_normal(instance, v, b, g, texels.normal, texels.of[TEXTURE_NORMAL].xyz);
   s.front = dot(g, direction) < 0.0;
   if (!s.front) s.curvature = -s.curvature;
   s.geometric = s.front ? g : -g;
   s.normal = s.front ? n : -n;
-  s.base = base_color_at(instance, material, v, b, texels[TEXTURE_BASE_COLOR]);
-  vec4 mr = texels[TEXTURE_METALLIC_ROUGHNESS];
+  s.base = base_color_at(instance, material, v, b, texels.of[TEXTURE_BASE_COLOR]);
+  vec4 mr = texels.of[TEXTURE_METALLIC_ROUGHNESS];
   s.metallic = clamp(material.metallic * mr.b, 0.0, 1.0);
   s.roughness = clamp(material.roughness * mr.g, 0.0, 1.0);
-  s.emission = material.emissive * texels[TEXTURE_EMISSIVE].rgb;
+  s.emission = material.emissive * texels.of[TEXTURE_EMISSIVE].rgb;
   s.occlusion = 1.0;
-  if (TEXTURED) s.occlusion += load_use(instance.material, TEXTURE_OCCLUSION).strength * (texels[TEXTURE_OCCLUSION].r - 1.0);
-  s.transmission = clamp(material.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
+  if (TEXTURED) s.occlusion += texels.occlusion.strength * (texels.of[TEXTURE_OCCLUSION].r - 1.0);
+  s.transmission = clamp(material.transmission * texels.of[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
   s.uv = TEXTURED ? point_uv.uv0.at : interpolate_uv(instance.uv0, v, b);
   s.object = instance.object;
   return s;

@@ -120,17 +120,3 @@ void look_up_all(uint material, uint count, vec2 uv0, vec2 uv1, out vec4 texels[
   if (!TEXTURED) return;
   [[dont_unroll]] for (uint k = 0u; k < count; ++k) texels[k] = look_up(material, k, uv0, uv1);
 }
-
-// All of a material's textures, each its mean over the footprint.
-void look_up_filtered(uint material, TexturePoint p, out vec4 texels[TEXTURES]) {
-  for (uint k = 0u; k < TEXTURES; ++k) texels[k] = vec4(1);
-  if (!TEXTURED) return;
-  [[dont_unroll]] for (uint k = 0u; k < TEXTURES; ++k) {
-    TextureUse use = load_use(material, k);
-    if ((use.flags & TEXTURE_HERE) == 0u) continue;
-    UvFootprint f = p.uv0;
-    if ((use.flags & TEXTURE_UV1) != 0u) f = p.uv1;
-    f = UvFootprint(turn_uv(use, f.at) + use.offset, turn_uv(use, f.along), turn_uv(use, f.across));
-    texels[k] = sample_filtered(use, f, is_color(k));
-  }
-}

@@ -57,7 +57,7 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderS
   light_count_ = std::max(light_count_, 1U);
   if (light_count_ > max_lights)
     throw limit_error(scene.path, std::to_string(light_count_) + " lights; the most is " + std::to_string(max_lights));
-  lights_ = Buffer(device, "lights", light_count_ * sizeof(gpu::Light), Kind::upload);
+  lights_ = Buffer(device, "lights", light_count_ * sizeof(gpu::Light), Kind::upload, by_address);
   layout_.indices = {};
   layout_.positions = layout_.normals = layout_.morphs = {};
   layout_.texels = layout_.joints = {};
@@ -87,6 +87,7 @@ void DeviceScene::set_addresses(gpu::Frame& frame) const {
   frame.texels_at = texels_.address_words();
   frame.instances_at = instances_.address_words();
   frame.materials_at = materials_.address_words();
+  frame.lights_at = lights_.address_words();
   if (nodes_) frame.nodes_at = nodes_.address_words();
 }
 
