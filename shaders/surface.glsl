@@ -119,7 +119,8 @@ Texels look_up_filtered(SharedLooks looks, TexturePoint p) {
     UvFootprint f = p.uv0;
     if ((use.flags & TEXTURE_UV1) != 0u) f = p.uv1;
     f = UvFootprint(turn_uv(use, f.at) + use.offset, turn_uv(use, f.along), turn_uv(use, f.across));
-    texels.of[k] = sample_filtered(use, f, is_color(k));
+    vec4 texel = sample_filtered(use, f, is_color(k));
+    [[unroll]] for (uint at = 0u; at < TEXTURES; ++at) texels.of[at] = at == k ? texel : texels.of[at];
   }
   return texels;
 }

@@ -16,14 +16,15 @@ vec3 srgb_to_linear(vec3 b) {
 
 vec4 bytes_of(uint word) { return vec4(ivec4(word & 255u, (word >> 8) & 255u, (word >> 16) & 255u, word >> 24)); }
 
-// Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU device. All is exact but the quotient, and
-// its floor is off by one at most.
-float wrap_texel(float i, float size, uint mode) {
-  if (mode == 2u) return clamp(i, 0.0, size - 1.0);
+// Texel i and the next. Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU device. All is exact
+// but the quotient, and its floor is off by one at most.
+vec2 wrap_two(float i, float size, uint mode) {
+  if (mode == 2u) return clamp(vec2(i, i + 1.0), 0.0, size - 1.0);
   float period = mode == 1u ? 2.0 * size : size;
   float m = i - period * floor(i / period);
   m = m < 0.0 ? m + period : m >= period ? m - period : m;
-  return m < size ? m : period - 1.0 - m;
+  vec2 p = vec2(m, m + 1.0 < period ? m + 1.0 : 0.0);
+  return mix(period - 1.0 - p, p, lessThan(p, vec2(size)));
 }
 
 struct Level {  // of a mip chain
@@ -47,8 +48,7 @@ vec4 sample_level(Level l, uint flags, vec2 uv, bool srgb) {
   if (!nearest) at -= 0.5;
   vec2 base = floor(at), f = nearest ? vec2(0) : at - base;
   uint mode_x = flags & 3u, mode_y = (flags >> 2) & 3u;
-  uvec2 x = to_uint(vec2(wrap_texel(base.x, size.x, mode_x), wrap_texel(base.x + 1.0, size.x, mode_x)));
-  uvec2 y = to_uint(vec2(wrap_texel(base.y, size.y, mode_y), wrap_texel(base.y + 1.0, size.y, mode_y)));
+  uvec2 x = to_uint(wrap_two(base.x, size.x, mode_x)), y = to_uint(wrap_two(base.y, size.y, mode_y));
   uint taps = nearest ? 1u : 4u;
   vec4 sum = vec4(0);
   [[dont_unroll]] for (uint tap = 0u; tap < taps; ++tap) {
