@@ -13,22 +13,17 @@ uint64_t to_fixed(float v) {
                       (to_uint(high) << 16) | to_uint(whole - high * 65536.0)));
 }
 
-void accumulate(uint pixel, uint channel, float v) {
-  uint64_t fixed_value = to_fixed(v);
-  if (fixed_value != 0ul) atomicAdd(sums_of(pixel).channel[channel], fixed_value);
+void accumulate(uint pixel, uint64_t sum[4], uint channels) {
+  for (uint c = 0u; c < channels; ++c)
+    if (sum[c] != 0ul) atomicAdd(sums_of(pixel).channel[c], sum[c]);
 }
 
 // Where no other ray of the dispatch is the pixel's. What the sums were before the first sample does not matter.
-void add_alone(uint pixel, vec4 v, uint channels, bool first) {
+void add_alone(uint pixel, uint64_t sum[4], uint channels, bool first) {
   PixelSums sums = sums_of(pixel);
-  uint64_t sum[4] = uint64_t[4](to_fixed(v.r), to_fixed(v.g), to_fixed(v.b), to_fixed(v.a));
   if (!first)
     for (uint c = 0u; c < channels; ++c) sum[c] += sums.channel[c];
   for (uint c = 0u; c < channels; ++c) sums.channel[c] = sum[c];
 }
 
-void accumulate_rgb(uint pixel, vec3 v) {
-  accumulate(pixel, 0u, v.r);
-  accumulate(pixel, 1u, v.g);
-  accumulate(pixel, 2u, v.b);
-}
+uint64_t[4] fixed_point(vec4 v) { return uint64_t[4](to_fixed(v.r), to_fixed(v.g), to_fixed(v.b), to_fixed(v.a)); }

@@ -211,12 +211,10 @@ vec3 absorbed(Parent p, Surface s, Material m, float t) {
 }
 
 void add_own(uint pixel, vec3 light, float coverage) {
-  if (push.sums != SUMS_SHARED) {
-    add_alone(pixel, vec4(light, coverage), 4u, push.sums == SUMS_UNSET);
-    return;
-  }
-  accumulate_rgb(pixel, light);
-  accumulate(pixel, 3u, coverage);
+  if (push.sums != SUMS_SHARED)
+    add_alone(pixel, fixed_point(vec4(light, coverage)), 4u, push.sums == SUMS_UNSET);
+  else
+    accumulate(pixel, fixed_point(vec4(light, coverage)), 4u);
 }
 
 // The rays that go on from a surface, light's aside.

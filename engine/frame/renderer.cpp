@@ -27,7 +27,7 @@ Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, con
       objects_(device, plan_),
       generate_(device, plan_, features_, settings.counted),
       compact_(device),
-      shade_(device, features_, settings.counted),
+      shade_(device, plan_, features_, scene_->lights(), settings.counted),
       resolve_(device),
       places_(pixel_samples(settings.filter, settings.samples.most)) {
   places_.emplace_back(0.5);
@@ -260,8 +260,9 @@ void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
 void Renderer::trace_shadows(std::uint32_t generation) {
   if (!plan_.shadows) return;
   trace(memory_.shadow, gpu::KIND_SHADOW, generation);
-  const bool one_each = one_ray_a_pixel(generation) && scene_->lights() == 1;
-  shade_.record(recorder_, memory_, one_each ? gpu::SUMS_OWN : gpu::SUMS_SHARED);
+  const bool primary = generation == 0;
+  shade_.record(recorder_, memory_,
+                {primary, one_ray_a_pixel(primary ? 0 : generation - 1), one_ray_a_pixel(generation)});
 }
 
 // Of the generation's rays together.

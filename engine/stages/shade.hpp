@@ -7,14 +7,21 @@
 
 namespace sheaf {
 
+/// Whose shadow rays the list holds.
+struct ShadowParents {
+  bool primary;               // the camera's rays, else reflections and refractions
+  bool one_a_pixel;           // of each kind
+  bool together_one_a_pixel;  // of both
+};
+
 class Shade {
  public:
-  Shade(const Device& device, const Features& features, bool counted);
-  /// `sums`: gpu::SUMS_…, what the list's rays are to their pixels.
-  void record(Recorder& recorder, const RayMemory& memory, std::uint32_t sums) const;
+  Shade(const Device& device, const Plan& plan, const Features& features, std::uint32_t lights, bool counted);
+  void record(Recorder& recorder, const RayMemory& memory, const ShadowParents& parents) const;
 
  private:
   Kernel shade_;
+  bool refractions_, by_parent_;
 };
 
 }  // namespace sheaf
