@@ -7,8 +7,8 @@
 uint to_uint(float v) { return floatBitsToUint(v + 8388608.0) & 0x7FFFFFu; }
 uvec2 to_uint(vec2 v) { return uvec2(to_uint(v.x), to_uint(v.y)); }
 
-// Quotient and remainder of n < 2^31 by d. Float and division are off by 2^-21 of the quotient together, so that one below 2^20 is off by one
-// at most, which the remainder tells. (A division of integers goes lane by lane.)
+// Quotient and remainder of n < 2^31 by d < 2^24. Rounding n (2^-24) and dividing (2.5 ulps) put a quotient below 2^21 off by less than one,
+// so that its floor is off by one at most, which the remainder tells. (A division of integers goes lane by lane.)
 uvec2 divided(uint n, uint d) {
   int quotient = int(to_uint(floor(float(int(n)) / float(int(d))))), rest = int(n) - quotient * int(d);
   int off = rest < 0 ? -1 : rest >= int(d) ? 1 : 0;
