@@ -16,8 +16,6 @@ uint leaves_left = 0u;        // of the first of them, where there was no room f
 // would look on. Where triangles are as small as the distance between rays, that is one lane in eight at work.
 uint h_vector[HELD_LEAVES], h_leaf[HELD_LEAVES];
 
-uint lanes_that(bool b) { return LANES > 8u ? subgroupBallotBitCount(subgroupBallot(b)) : bitCount(lanes_where(b)); }
-
 // A vector's test loads a triangle once, a lane's own gathers it and what belongs to its ray: about three lanes' worth.
 bool worth_waiting(uint entering) { return 4u * entering <= LANES; }
 
@@ -53,7 +51,7 @@ void test_all_held() {
 }
 
 #define OF_LEAF(field, at) \
-  (LANES < 8u && (at) >= 4u ? subgroupShuffle(upper_leaf.field, (at) & 3u) : subgroupShuffle(lower_leaf.field, (at)))
+  (LANES < 8u && (at) >= 4u ? subgroupShuffle(upper_leaf.field, (at) & 3u) : OF_LANE(lower_leaf.field, (at)))
 
 // Which vectors the leaves entered are for.
 void hand_out_leaves(uint entered, uint turn) {
@@ -66,15 +64,15 @@ void hand_out_leaves(uint entered, uint turn) {
     uint k = lowest_bit(rest), at = k ^ turn;
     if (beam_enters(vector_beam, OF_LEAF(lo, at), OF_LEAF(hi, at))) own_leaves |= 1u << k;
   }
-  todo = lanes_where(own_leaves != 0u);
+  todo = lanes_where(own_leaves != 0u, VECTORS);
 }
 
 // The first vector that has leaves to test, while what must wait has room.
 void test_vector() {
   uint v = lowest_bit(todo), rest = leaves_left;
-  if (rest == 0u) rest = VECTORS > LANES ? leaves : subgroupShuffle(own_leaves, v);
+  if (rest == 0u) rest = VECTORS > LANES ? leaves : OF_LANE(own_leaves, v);
   Work w = load_work(v);
-  bool room = true;
+  bool room = true, tested = false;
   while (rest != 0u && room) {
     uint at = lowest_bit(rest) ^ leaf_turn;
     rest &= rest - 1u;
@@ -88,13 +86,16 @@ void test_vector() {
     if (worth_waiting(entering)) {
       if (enters) hold_leaf(v, leaf);
     } else {
+      tested = true;
       for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
         test_corners(load_triangle_together(triangle), triangle, enters, w);
     }
     room = waiting_has_room();
   }
-  put_found(w);
-  bound_vector(v, w.best.t);
+  if (tested) {
+    put_found(w);
+    bound_vector(v, w.best.t);
+  }
   leaves_left = rest;
   if (rest == 0u) todo &= todo - 1u;
 }

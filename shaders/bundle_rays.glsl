@@ -137,7 +137,7 @@ void bound_vector(uint v, float nearest_so_far) {
 
 float farthest_hit() {
   float far = -INFINITY;
-  if (VECTORS <= LANES) return max_lanes(vector_beam.farthest);
+  if (VECTORS <= LANES) return max_lanes(vector_beam.farthest, VECTORS);
   [[unroll]] for (uint v = 0u; v < VECTORS; ++v) far = max(far, r_t[v]);
   return max_lanes(far);
 }

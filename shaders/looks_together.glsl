@@ -17,12 +17,11 @@ const bool TOGETHER = WORKERS > 0u && LANES >= 8u;
 // Whether lanes go on that have nothing of their own to do.
 bool goes_on(bool has) { return TOGETHER ? any_lane(has) : has; }
 
-// The least of the lanes that have one, for those that have none.
+// That of the first lane that has one, for those that have none.
 uint stand_in(uint value, bool has) {
   if (!TOGETHER) return value;
-  uint least = has ? value : NO_INDEX;
-  for (uint m = 1u; m < LANES; m <<= 1) least = min(least, subgroupShuffleXor(least, m));
-  return has ? value : least;
+  uint having = lanes_where(has), first = OF_LANE(value, lowest_bit(having | 1u << (LANES - 1u)));
+  return has || having == 0u ? value : first;
 }
 
 struct SharedLooks {

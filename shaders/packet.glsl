@@ -58,7 +58,11 @@ void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, in
   uint todo = apart ? own : leaves;
   while (any_lane(todo != 0u)) {
     bool has = todo != 0u;
-    uint leaf = child_together(has ? lowest_bit(todo) : 0u);
+    uint slot = has ? lowest_bit(todo) : 0u, leaf;
+    if (apart)
+      leaf = own_child(slot);
+    else
+      leaf = child_together(slot);
     todo &= todo - (has ? 1u : 0u);
     uint triangle = leaf_first(leaf), last = has ? triangle + leaf_count(leaf) : triangle;
     while (any_lane(triangle < last)) {
@@ -101,7 +105,7 @@ void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade
   while (node != CHILD_EMPTY && saved >= 0) {
     uint entered = entered_by(load_boxes_together(node), ray, s, best.t);
     if (best.t > -INFINITY) tests.boxes += WIDE;
-    uint some = or_lanes(entered);
+    uint alike = or_lanes(entered | (entered != 0u ? 256u << gl_SubgroupInvocationID : 0u)), some = alike & 255u;
     hold_children(node);
     uint leaves = some & leaf_children();
     visit_together(w.visit, node, some & ~leaves);
@@ -109,7 +113,7 @@ void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade
       test_leaves(leaves, entered & leaves, ray, s, best, shade, tests);
       if (ANY_HIT && !any_lane(best.t > -INFINITY)) break;
     }
-    saved = min(saved + int(8u * bitCount(lanes_where(entered != 0u)) / LANES) - LEAST_TOGETHER, MOST_SAVED);
+    saved = min(saved + int(8u * bitCount(alike >> 8) / LANES) - LEAST_TOGETHER, MOST_SAVED);
     node = next_together(w.visit);
   }
   if (asks_materials()) settle_all(ray, best, shade);

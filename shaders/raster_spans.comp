@@ -192,7 +192,7 @@ void test_rectangle(Outline o, Corners corners, uint triangle) {
   }
 }
 
-#define FROM(value) subgroupShuffle(value, from)
+#define FROM(value) OF_LANE(value, from)
 
 // All lanes along the spans of one lane's triangle: first a row a lane, then a sample a lane.
 void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
@@ -205,7 +205,7 @@ void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
     vec2 spans = span_of(o, top + lane);
     float rows = min(float(LANES), o.hi.y - top + 1.0);
     for (uint row = 0u; float(row) < rows; ++row) {
-      vec2 span = subgroupShuffle(spans, row);
+      vec2 span = OF_LANE(spans, row);
       for (float x = span.x; x <= span.y; x += float(LANES)) {
         float at = x + lane;
         if (at <= span.y) test_sample(vec2(at, top + float(row)), o, corners, triangle);

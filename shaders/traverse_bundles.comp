@@ -47,7 +47,7 @@ uint entered_children(Beam beam, Cone cone, uint node) {
     bool there = c < WIDE && (boxes.grid.there & (1u << c)) != 0u;
     if (there) ++node_tests;
     bool enters = there && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
-    entered |= lanes_where(enters) << base;
+    entered |= lanes_where(enters, WIDE) << base;
   }
   return entered & 255u;
 }

@@ -13,14 +13,17 @@ void hold_children(uint node) {
   if (LANES < 8u) children.y = node_word(node, NODE_CHILD + 4u + (gl_SubgroupInvocationID & 3u));
 }
 
-uint child_together(uint slot) {
+// Of a slot of each lane's own.
+uint own_child(uint slot) {
   return LANES < 8u && slot >= 4u ? subgroupShuffle(children.y, slot & 3u) : subgroupShuffle(children.x, slot);
 }
+
+uint child_together(uint slot) { return IN_TURN ? OF_LANE(children.x, slot) : own_child(slot); }
 
 // Which of the children held are leaves, a bit each; of slots that are empty it means nothing.
 uint leaf_children() {
   if (LANES < 8u) return lanes_where(!is_node(children.x)) & 15u | (lanes_where(!is_node(children.y)) & 15u) << 4;
-  return lanes_where(!is_node(children.x)) & 255u;
+  return lanes_where(!is_node(children.x), WIDE) & 255u;
 }
 
 // The node's children that were entered, a bit each, come next.
@@ -37,7 +40,7 @@ void visit_together(inout Visit v, uint node, uint entered) {
 uint stacked_group(uint depth) {
   uint row = stack_row[0];
   [[unroll]] for (uint r = 1u; r < STACK_ROWS; ++r) row = depth >= r * LANES ? stack_row[r] : row;
-  return subgroupShuffle(row, depth % LANES);
+  return OF_LANE(row, depth % LANES);
 }
 
 // As next_child().

@@ -178,6 +178,7 @@ Device::Device(const std::string& selector) {
   core.shaderInt64 = core.vertexPipelineStoresAndAtomics = core.fragmentStoresAndAtomics = VK_TRUE;
   vk::PhysicalDeviceVulkan12Features twelve;
   twelve.scalarBlockLayout = twelve.shaderBufferInt64Atomics = twelve.bufferDeviceAddress = VK_TRUE;
+  twelve.subgroupBroadcastDynamicId = VK_TRUE;  // which every Vulkan 1.2 has
   vk::PhysicalDeviceAccelerationStructureFeaturesKHR structures;
   vk::PhysicalDeviceRayQueryFeaturesKHR query;
   if (limits_.ray_query) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "vulkan/vector_width.hpp"
 
 namespace sheaf {
 namespace {
@@ -25,6 +26,16 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     std::fprintf(stderr, "vulkan validation: %s\n", data->pMessage);
   }
   return VK_FALSE;
+}
+
+vk::raii::Instance create(const vk::raii::Context& context, const vk::InstanceCreateInfo& info) {
+  try {
+    return {context, info};
+  } catch (const vk::LayerNotPresentError&) {
+    throw Error(ErrorKind::device, "Vulkan: SHEAF_VALIDATION is set but the validation layer is not installed");
+  } catch (const vk::SystemError& error) {
+    throw Error(ErrorKind::device, std::string("Vulkan: no instance (is a driver installed?): ") + error.what());
+  }
 }
 
 }  // namespace
@@ -52,13 +63,10 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, Validation va
   const vk::ValidationFeaturesEXT features(more);
   vk::InstanceCreateInfo info({}, &application, layers, extensions);
   if (!more.empty()) info.pNext = &features;
-  try {
-    return {context, info};
-  } catch (const vk::LayerNotPresentError&) {
-    throw Error(ErrorKind::device, "Vulkan: SHEAF_VALIDATION is set but the validation layer is not installed");
-  } catch (const vk::SystemError& error) {
-    throw Error(ErrorKind::device, std::string("Vulkan: no instance (is a driver installed?): ") + error.what());
-  }
+  auto instance = create(context, info);
+  if (!widen_vectors(instance)) return instance;
+  instance.clear();
+  return create(context, info);
 }
 
 vk::raii::DebugUtilsMessengerEXT make_messenger(const vk::raii::Instance& instance) {

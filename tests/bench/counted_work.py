@@ -24,6 +24,7 @@ HERE = Path(__file__).resolve().parent
 SCENES = HERE.parent / "scenes"
 SHEAF = Path(os.environ.get("SHEAF_BUILD", HERE.parents[1] / "build")).resolve() / "sheaf"
 EXPECTED = HERE / "counted_work.json"
+NARROW = {"LP_NATIVE_VECTOR_WIDTH": "256"}  # the same subgroups on every CPU with AVX
 OPTIONS = ("--depth", "4", "--count", "on", "--progress", "none")
 PUBLISHED = ("rsh", "crsh")  # level by level, as the papers have it
 STRATEGIES = ("hybrid", "bvh", "crsh", "rsh", "frustum", "classify", "brute")
@@ -49,7 +50,9 @@ def known_strategies() -> list[str]:
 
 def device() -> dict[str, Any]:
     """The first device: its kind, its subgroups and its driver up to the minor version."""
-    done = subprocess.run([SHEAF, "devices", "--json"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [SHEAF, "devices", "--json"], capture_output=True, text=True, check=True, env=os.environ | NARROW
+    )
     first = json.loads(done.stdout)[0]
     name, _, version = first["driver"].partition(" Mesa ")
     driver = f"{name} Mesa {'.'.join(version.split('.')[:2])}" if version else first["driver"]
@@ -72,7 +75,7 @@ def work_of(frame: dict[str, Any], strategy: str) -> dict[str, Any]:
 def count(case: str, strategy: str, threads: int | None = None) -> list[dict[str, Any]]:
     """One run's frames."""
     scene, options, _ = CASES[case]
-    environment = os.environ | ({"LP_NUM_THREADS": str(threads)} if threads is not None else {})
+    environment = os.environ | NARROW | ({"LP_NUM_THREADS": str(threads)} if threads is not None else {})
     with tempfile.TemporaryDirectory() as folder:
         stats = Path(folder) / "stats.json"
         command = [SHEAF, "render", SCENES / f"{scene}.glb", "--out", folder, "--stats", stats, "--strategy", strategy]

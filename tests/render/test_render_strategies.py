@@ -64,3 +64,10 @@ def test_vectors_of_any_width_give_the_same_pixels(sheaf, sheaf_once, scene):
     for (name, bits), picture in zip(cases, pictures):
         differ = int((picture != pictures[0]).any(-1).sum())
         assert differ == 0, f"{name}, {bits} bits: {differ} pixels"
+
+
+@pytest.mark.parametrize("bits", [128, 256, 512])
+def test_a_width_that_was_asked_for_is_kept(sheaf_once, bits):
+    run = sheaf_once("devices", "--json", env={"LP_NATIVE_VECTOR_WIDTH": str(bits)})
+    first = json.loads(run.stdout)[0]
+    assert first["kind"] != "cpu" or first["subgroup"] == bits // 32
