@@ -52,6 +52,7 @@ void Raster::make_pipeline(const Plan& plan, const Features& features) {
   const vk::PipelineDynamicStateCreateInfo dynamics({}, dynamic);
   vk::GraphicsPipelineCreateInfo info({}, stages, &input, &assembly, nullptr, &viewport, &raster, &multisample, nullptr,
                                       &blend, &dynamics, layout_.handle(), *pass_);
+  const auto making = device.while_making();
   pipeline_ = vk::raii::Pipeline(device.logical(), device.pipeline_cache(), info);
 }
 

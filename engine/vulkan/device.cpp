@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "vulkan/instance.hpp"
+#include "vulkan/vector_width.hpp"
 
 namespace sheaf {
 namespace {
@@ -168,8 +169,13 @@ Device::Device(const std::string& selector) {
   limits_.groups_x = properties.limits.maxComputeWorkGroupCount[0];
   limits_.timestamp_ns = properties.limits.timestampPeriod;
   limits_.cpu = properties.deviceType == vk::PhysicalDeviceType::eCpu;
-  if (limits_.cpu) limits_.workers = cpu_workers();
+  if (limits_.cpu) {
+    limits_.workers = cpu_workers();
+    // Eight vectors. Four of 16 lanes take 1.07 of the time in Sponza, 16 of eight 1.2.
+    limits_.bundle = std::max(limits_.bundle, 8 * limits_.subgroup);
+  }
   limits_.ray_query = summary_.ray_query;
+  making_waits_ = limits_.cpu && vector_width_is_given();
 
   const float priority = 1;
   vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
@@ -202,6 +208,14 @@ Device::Device(const std::string& selector) {
 }
 
 Device::~Device() = default;
+
+std::shared_lock<std::shared_mutex> Device::while_making() const {
+  return making_waits_ ? std::shared_lock(making_or_working_) : std::shared_lock<std::shared_mutex>();
+}
+
+std::unique_lock<std::shared_mutex> Device::while_working() const {
+  return making_waits_ ? std::unique_lock(making_or_working_) : std::unique_lock<std::shared_mutex>();
+}
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags wanted) const {
   const auto memory = physical_.getMemoryProperties();

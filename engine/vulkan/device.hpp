@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -27,6 +29,7 @@ struct DeviceLimits {
   float timestamp_ns = 1;
   bool cpu = false;
   std::uint32_t workers = 0;  // threads of a CPU device, between which it divides a dispatch (shaders/dealing.h)
+  std::uint32_t bundle = 64;  // rays of a bundle of `hybrid`
   bool ray_query = false;
 };
 
@@ -55,6 +58,13 @@ class Device {
   /// Validation messages seen so far (only counted where the layer is on: SHEAF_VALIDATION=1).
   [[nodiscard]] static std::uint64_t validation_messages();
 
+  /// Held while a kernel is made, and while the queue works. Where a variable gives the width of llvmpipe's vectors,
+  /// the two exclude each other: the queue compiles what it meets first, finds that width anew each time, and for a
+  /// moment takes it for the driver's own. A kernel made in that moment is wrong, and kept in the cache (seen with
+  /// Mesa 25.0.7).
+  [[nodiscard]] std::shared_lock<std::shared_mutex> while_making() const;
+  [[nodiscard]] std::unique_lock<std::shared_mutex> while_working() const;
+
   /// Device memory now held and its peak, bytes; buffers and images report here.
   void account(std::int64_t bytes) const;
   [[nodiscard]] std::uint64_t peak_bytes() const { return peak_.load(); }
@@ -71,6 +81,8 @@ class Device {
   std::uint32_t queue_family_ = 0;
   DeviceLimits limits_;
   DeviceSummary summary_;
+  bool making_waits_ = false;
+  mutable std::shared_mutex making_or_working_;
   mutable std::atomic<std::int64_t> held_{0};
   mutable std::atomic<std::uint64_t> peak_{0};
 };

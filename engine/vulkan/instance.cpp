@@ -64,7 +64,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, Validation va
   vk::InstanceCreateInfo info({}, &application, layers, extensions);
   if (!more.empty()) info.pNext = &features;
   auto instance = create(context, info);
-  if (!widen_vectors(instance)) return instance;
+  if (!suit_vectors(instance)) return instance;
   instance.clear();
   return create(context, info);
 }

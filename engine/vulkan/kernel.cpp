@@ -62,7 +62,9 @@ Kernel::Kernel(const Device& device, std::string_view stem, std::span<const Spec
     : stem_(stem), layout_(device, declared_roles(shader_code(stem)), vk::ShaderStageFlagBits::eCompute) {
   std::vector given(constants.begin(), constants.end());
   given.push_back({SPEC_WORKERS, device.limits().workers});
+  given.push_back({SPEC_BUNDLE, device.limits().bundle});
   auto make = [&device, stem = stem_, layout = layout_.handle(), given = std::move(given)] {
+    const auto making = device.while_making();
     return make_pipeline(device, stem, layout, given);
   };
   pipeline_ = std::async(std::launch::async, std::move(make)).share();

@@ -135,6 +135,7 @@ void Recorder::submit_and_wait() {
   commands_.end();
   recording_ = false;
   try {
+    const auto working = device_.while_working();
     device_.queue().submit(vk::SubmitInfo({}, {}, *commands_), *fence_);
     if (const auto call = std::exchange(at_submit_, nullptr)) call();
     const auto result = device_.logical().waitForFences(*fence_, VK_TRUE, UINT64_MAX);

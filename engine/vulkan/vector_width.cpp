@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "vulkan/vector_width.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 
 #if defined(__x86_64__)
@@ -13,9 +13,9 @@
 namespace sheaf {
 namespace {
 
-constexpr const char* variable = "LP_NATIVE_VECTOR_WIDTH";
-constexpr const char* wide = "512";
-constexpr std::uint32_t narrow_lanes = 256 / 32;
+constexpr const char* width_variable = "LP_NATIVE_VECTOR_WIDTH";
+constexpr const char* cache_variable = "MESA_SHADER_CACHE_DIR";
+constexpr std::uint32_t own_bits = 256, wide_bits = 512;
 
 // AMD's from Zen 5 (family 26) on. Before, 512 bits take two turns; and for most of Intel's LLVM halves such vectors.
 bool cpu_computes_512_bits_at_once() {
@@ -30,13 +30,26 @@ bool cpu_computes_512_bits_at_once() {
 #endif
 }
 
-bool gains(const vk::raii::PhysicalDevice& physical) {
-  const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
-                                             vk::PhysicalDeviceSubgroupProperties>();
-  const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
-  return driver.driverID == vk::DriverId::eMesaLlvmpipe &&
-         chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize == narrow_lanes &&
-         driver_gains_from_wide_vectors(driver.driverInfo.data());
+struct Vectors {
+  std::uint32_t bits = 0;  // 0: no llvmpipe
+  bool gain = false;
+};
+
+Vectors vectors_of(const vk::raii::Instance& instance) {
+  for (const auto& physical : instance.enumeratePhysicalDevices()) {
+    const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                                               vk::PhysicalDeviceSubgroupProperties>();
+    const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
+    if (driver.driverID == vk::DriverId::eMesaLlvmpipe)
+      return {chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize * 32,
+              driver_gains_from_wide_vectors(driver.driverInfo.data())};
+  }
+  return {};
+}
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
 }
 
 }  // namespace
@@ -52,10 +65,30 @@ bool driver_gains_from_wide_vectors(const std::string& driver_info) {
          release >= first_release;
 }
 
-bool widen_vectors(const vk::raii::Instance& instance) {
-  if (std::getenv(variable) != nullptr || !cpu_computes_512_bits_at_once()) return false;
-  const auto devices = instance.enumeratePhysicalDevices();
-  return std::any_of(devices.begin(), devices.end(), gains) && ::setenv(variable, wide, 0) == 0;
+bool vector_width_is_given() { return std::getenv(width_variable) != nullptr; }
+
+std::string kernel_cache_folder(std::uint32_t bits) {
+  const std::string given = environment(cache_variable), own = "/vectors_" + std::to_string(bits);
+  if (given.ends_with(own)) return given;
+  if (!given.empty()) return given + own;
+  const std::string caches = environment("XDG_CACHE_HOME"), home = environment("HOME");
+  if (!caches.empty()) return caches + "/sheaf" + own;
+  return home.empty() ? "" : home + "/.cache/sheaf" + own;
+}
+
+bool suit_vectors(const vk::raii::Instance& instance) {
+  const bool said = vector_width_is_given();
+  if (!said && !cpu_computes_512_bits_at_once()) return false;
+  const Vectors now = vectors_of(instance);
+  const std::uint32_t wanted = !said && now.gain && now.bits == own_bits ? wide_bits : now.bits;
+  if (wanted == 0 || wanted == own_bits) return false;
+  const std::string folder = kernel_cache_folder(wanted);
+  if (folder.empty() || folder == environment(cache_variable)) return false;
+  std::error_code ignored;  // then kernels are not kept
+  std::filesystem::create_directories(folder, ignored);
+  ::setenv(cache_variable, folder.c_str(), 1);
+  ::setenv(width_variable, std::to_string(wanted).c_str(), 1);
+  return true;
 }
 
 }  // namespace sheaf

@@ -57,7 +57,7 @@ std::vector<std::string> cache_folders() {
   const std::string cache = !xdg.empty() ? xdg : home.empty() ? "" : home + "/.cache";
   std::vector<std::string> folders;
   if (!mesa.empty()) folders.push_back(mesa);
-  for (const char* name : {"mesa_shader_cache", "mesa_shader_cache_db", "nvidia"})
+  for (const char* name : {"mesa_shader_cache", "mesa_shader_cache_db", "sheaf", "nvidia"})
     if (mesa.empty() && !cache.empty()) folders.push_back(cache + "/" + name);
   if (!home.empty()) folders.push_back(home + "/.nv");
   for (const std::string& folder : folders) {
