@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+layout(constant_id = SPEC_BUNDLE) const uint BUNDLE_RAYS = BUNDLE;  // of `hybrid`
+
 // Indirect dispatch arguments. Workgroups past a row are folded into y (see global_group).
 BUFFER(ROLE_ARGS, coherent, uint, args);
 
@@ -25,7 +27,7 @@ uint groups_of(uint items, uint size) { return (items + size - 1u) / size; }
 void set_list_args(uint rays) {
   set_args(ARGS_RAYS, groups_of(rays, GROUP));
   set_args(ARGS_BLOCKS, groups_of(rays, SCAN_BLOCK));
-  set_args(ARGS_BUNDLES, groups_of(rays, BUNDLE));
+  set_args(ARGS_BUNDLES, groups_of(rays, BUNDLE_RAYS));
   set_args(ARGS_LOOSE, 0u);
   counters[COUNT_LOOSE] = 0u;
   set_args(ARGS_ONE, min(rays, 1u));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Up to BUNDLE rays that a subgroup carries through a scene together: vectors of LANES rays each. At a leaf the lanes are first
+// Rays that a subgroup carries through a scene together, up to VECTORS vectors of LANES rays each. At a leaf the lanes are first
 // vectors (a bound of each against the leaf's box), then the rays of the vectors that enter. Nodes and triangles are loaded once
 // for all rays, a pair of words a lane.
 layout(constant_id = SPEC_LANES) const uint LANES = 8;    // of a subgroup, which is the workgroup
-layout(constant_id = SPEC_VECTORS) const uint VECTORS = 8;  // BUNDLE / LANES
+layout(constant_id = SPEC_VECTORS) const uint VECTORS = 8;
 #include "lanes.glsl"
 #include "bundle_bound.glsl"
 

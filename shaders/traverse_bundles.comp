@@ -86,10 +86,10 @@ bool walk(Beam beam, Cone cone) {
 
 void main() {
   uint rays_here = counters[COUNT_RAYS + push.kind], bundle = global_group();
-  first_ray = bundle * BUNDLE;
+  first_ray = bundle * BUNDLE_RAYS;
   if (first_ray >= rays_here) return;
   lane = gl_SubgroupInvocationID;
-  ray_count = min(BUNDLE, rays_here - first_ray);
+  ray_count = min(BUNDLE_RAYS, rays_here - first_ray);
   Beam beam = load_bundle();
   RayNode node = bundle_bound(spread);
   bool loose = ray_count < 8u || is_loose(node, spread, push.widest);

@@ -26,7 +26,7 @@ void main() {
   uint i = global_index();
   if (LOOSE) {
     if (global_group() >= counters[COUNT_LOOSE]) return;
-    i = work[global_group()] * BUNDLE + local_index();
+    i = work[global_group()] * gl_WorkGroupSize.x + local_index();
   }
   uint last = counters[COUNT_RAYS + push.kind];
   bool there = true;

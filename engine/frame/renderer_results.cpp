@@ -43,7 +43,8 @@ void Renderer::collect_generations(RenderedFrame& out) {
     found->rays += counters[gpu::COUNT_RAYS + kind];
     add_levels(found->pairs_per_level, record_pairs_[r]);
     if (plan_.bundles) {
-      const std::uint32_t bundles = (counters[gpu::COUNT_RAYS + kind] + gpu::BUNDLE - 1) / gpu::BUNDLE;
+      const std::uint32_t size = device_.limits().bundle;
+      const std::uint32_t bundles = (counters[gpu::COUNT_RAYS + kind] + size - 1) / size;
       found->nodes += bundles;
       found->tight += bundles - counters[gpu::COUNT_LOOSE];
     } else if (plan_.packets) {

@@ -20,7 +20,7 @@ CellWalk::CellWalk(const TraceContext& c, std::uint32_t frustum_sets)
     : context_(c), ranges_(c.device, "pairs_ranges"), compact_(c.device, "open"), single_(c, false) {
   const std::vector<SpecConstant> counting{{SPEC_COUNTED, c.counted}};
   open_ = Kernel(c.device, "pairs_open", counting);
-  const auto lanes = lane_constants(c.device);
+  const auto lanes = lane_constants(c.device, gpu::BUNDLE);
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
     constants.insert(constants.end(), lanes.begin(), lanes.end());

@@ -25,9 +25,9 @@ std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hi
           {SPEC_POSED, c.plan.posed}};
 }
 
-std::vector<SpecConstant> lane_constants(const Device& device) {
-  const std::uint32_t lanes = std::min(device.limits().subgroup, gpu::BUNDLE);
-  return {{SPEC_GROUP, lanes}, {SPEC_LANES, lanes}, {SPEC_VECTORS, gpu::BUNDLE / lanes}};
+std::vector<SpecConstant> lane_constants(const Device& device, std::uint32_t rays) {
+  const std::uint32_t lanes = std::min(device.limits().subgroup, rays);
+  return {{SPEC_GROUP, lanes}, {SPEC_LANES, lanes}, {SPEC_VECTORS, rays / lanes}};
 }
 
 std::unique_ptr<Tracer> make_tracer(const TraceContext& context) {

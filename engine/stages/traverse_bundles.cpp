@@ -17,7 +17,7 @@ constexpr std::uint32_t most_effort = 250;
 
 TraverseBundles::TraverseBundles(const TraceContext& c) : context_(c), single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
-  const auto lanes = lane_constants(c.device);
+  const auto lanes = lane_constants(c.device, c.device.limits().bundle);
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
     constants.insert(constants.end(), lanes.begin(), lanes.end());

@@ -30,7 +30,7 @@ TraverseClasses::TraverseClasses(const TraceContext& c)
       offsets_(c.device, "candidates"),
       packets_(c.device, "class_packets"),
       walk_(c, 2) {
-  const auto lanes = lane_constants(c.device);
+  const auto lanes = lane_constants(c.device, gpu::BUNDLE);
   bounds_ = Kernel(c.device, "classify_bounds", lanes);
   frustums_ = Kernel(c.device, "classify_frustums", lanes);
   const std::uint64_t cells = std::uint64_t{walk_.cell_room()} + 1;

@@ -9,6 +9,7 @@ SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
     constants.push_back({SPEC_LOOSE, loose});
+    if (loose) constants.push_back({SPEC_GROUP, c.device.limits().bundle});
     const bool packets = loose && c.device.limits().cpu;
     if (packets) constants.push_back({SPEC_LANES, c.device.limits().subgroup});
     return Kernel(c.device, packets ? "traverse_packets" : "traverse_single", constants);

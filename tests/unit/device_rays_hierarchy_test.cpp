@@ -198,7 +198,8 @@ TEST(DeviceRaysHierarchy, NodesOfEveryLevelHoldTheirRays) {
 
 // Among no objects at all: only what is too wide, or too few, is left to others.
 TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
-  auto constants = lane_constants(device());
+  const std::uint32_t bundle = device().limits().bundle;
+  auto constants = lane_constants(device(), bundle);
   for (const std::uint32_t off : {SPEC_MASKED, SPEC_TRANSLUCENT, SPEC_TEXTURED}) constants.push_back({off, 0});
   const Kernel kernel(device(), "traverse_bundles", constants);
   const std::map<std::string, bool> loose{{"random", true},    {"antiparallel", true},      {"six axes", true},
@@ -208,7 +209,7 @@ TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
       const auto is_loose = loose.find(batch.name);
       if (is_loose == loose.end()) continue;
       ListOnDevice on_device(make_rays(batch, count));
-      const Output<std::uint32_t> work(blocks_of(count, gpu::BUNDLE));
+      const Output<std::uint32_t> work(blocks_of(count, bundle));
       Buffer args = buffer_of(std::vector<std::uint32_t>(std::size_t{gpu::ARGS_COUNT} * 3));
       const Output<std::uint64_t> hits(count);
       on_device.recorder().bind(ROLE_WORK, work.buffer());
@@ -218,11 +219,11 @@ TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
         std::uint32_t kind, most_effort;
         float widest;
       } push{kind, 250, 0.1F};
-      on_device.recorder().dispatch(kernel, push, blocks_of(count, gpu::BUNDLE) + 1ULL);
+      on_device.recorder().dispatch(kernel, push, blocks_of(count, bundle) + 1ULL);
       on_device.recorder().submit_and_wait();
       std::vector<std::uint32_t> expected;
-      for (std::uint32_t b = 0; b < blocks_of(count, gpu::BUNDLE); ++b)
-        if (is_loose->second || count - b * gpu::BUNDLE < 8) expected.push_back(b);
+      for (std::uint32_t b = 0; b < blocks_of(count, bundle); ++b)
+        if (is_loose->second || count - b * bundle < 8) expected.push_back(b);
       auto alone = work.values();
       alone.resize(args.view<std::uint32_t>()[gpu::ARGS_LOOSE * 3]);
       std::sort(alone.begin(), alone.end());

@@ -134,7 +134,7 @@ void expect_list_args(const Words& args, std::uint32_t rays) {
   Words expected = args;
   set_args(expected, gpu::ARGS_RAYS, blocks_of(rays, gpu::GROUP));
   set_args(expected, gpu::ARGS_BLOCKS, blocks_of(rays));
-  set_args(expected, gpu::ARGS_BUNDLES, blocks_of(rays, gpu::BUNDLE));
+  set_args(expected, gpu::ARGS_BUNDLES, blocks_of(rays, device().limits().bundle));
   set_args(expected, gpu::ARGS_LOOSE, 0);
   set_args(expected, gpu::ARGS_ONE, std::min(rays, 1U));
   EXPECT_EQ(args, expected);
