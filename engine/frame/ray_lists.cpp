@@ -86,7 +86,8 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   m.block_sums = Buffer(device, "block sums", (std::uint64_t{m.capacity} / gpu::SCAN_BLOCK + 2) * 4 * gpu::RADIX);
   m.accumulation = Buffer(device, "accumulation", pixels * 32, Kind::device, by_address);
   if (plan.raster) m.visibility = Buffer(device, "visibility", pixels * 8, Kind::device, by_address);
-  m.output = Buffer(device, "output", pixels * 16, Kind::device, by_address);
+  if (!device.limits().cpu)  // there it is written where the host reads it
+    m.output = Buffer(device, "output", pixels * 16, Kind::device, by_address);
   m.readback = Buffer(device, "read-back", pixels * 16, Kind::readback, by_address);
   if (plan.adaptive) {
     m.accumulation_readback = Buffer(device, "accumulation", pixels * 32, Kind::readback, by_address);

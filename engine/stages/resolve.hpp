@@ -15,9 +15,9 @@ class Resolve {
     const struct {
       std::uint64_t output;
       float inverse_samples;
-    } push{memory.output.address(), 1.0F / static_cast<float>(samples)};
+    } push{(memory.output ? memory.output : memory.readback).address(), 1.0F / static_cast<float>(samples)};
     recorder.dispatch(resolve_, push, (std::uint64_t{pixels} + gpu::GROUP - 1) / gpu::GROUP);
-    recorder.copy(memory.output, memory.readback, std::uint64_t{pixels} * 16);
+    if (memory.output) recorder.copy(memory.output, memory.readback, std::uint64_t{pixels} * 16);
   }
 
  private:
