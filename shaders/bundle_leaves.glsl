@@ -41,13 +41,14 @@ void test_held() {
 }
 
 void test_all_held() {
-  if (!any_lane(held > 0u)) return;
+  if (most_held == 0u) return;
   while (any_lane(held > 0u)) test_held();
   [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
     float t;
     PICK(t, r_t, v);
     bound_vector(v, t);
   }
+  most_held = 0u;
 }
 
 #define OF_LEAF(field, at) \
@@ -85,8 +86,10 @@ void test_vector() {
     uint leaf = OF_LEAF(word, at);
     if (worth_waiting(entering)) {
       if (enters) hold_leaf(v, leaf);
+      ++most_held;
     } else {
       tested = true;
+      most_queued += leaf_count(leaf);
       for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
         test_corners(load_triangle_together(triangle), triangle, enters, w);
     }

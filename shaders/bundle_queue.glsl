@@ -6,11 +6,20 @@ uint q_vector[QUEUE], q_triangle[QUEUE];
 float q_t[QUEUE];
 uint queued = 0u;  // of this lane
 
-// For what one more leaf of one vector may add: itself, or hits; what waits are hits to be.
+// No lane has more of either; the same in all.
+uint most_held = 0u, most_queued = 0u;
+
+bool is_room(uint holding, uint queueing) {
+  return holding < HELD_LEAVES && (!asks_materials() || queueing + LEAF_TRIANGLES * (holding + 1u) <= QUEUE);
+}
+
+// For what one more leaf of one vector may add: itself, or hits; what waits are hits to be. Lanes are asked where what they may
+// have does not tell.
 bool waiting_has_room() {
-  bool full = held == HELD_LEAVES;
-  if (asks_materials()) full = full || queued + LEAF_TRIANGLES * (held + 1u) > QUEUE;
-  return !any_lane(full);
+  if (is_room(most_held, most_queued)) return true;
+  most_held = to_uint(max_lanes(float(held)));
+  if (asks_materials()) most_queued = to_uint(max_lanes(float(queued)));
+  return is_room(most_held, most_queued) || !any_lane(!is_room(held, queued));
 }
 
 void queue_pending(uint v, Pending pending) {
@@ -43,5 +52,5 @@ void settle_one(uint v, uint triangle, float t) {
 
 void settle_queue() {
   for (uint e = 0u; e < queued; ++e) settle_one(q_vector[e], q_triangle[e], q_t[e]);
-  queued = 0u;
+  queued = most_queued = 0u;
 }

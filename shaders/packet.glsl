@@ -13,6 +13,7 @@
 const uint MOST_WAITING = 4u;
 Pending waiting[MOST_WAITING];
 uint waiting_count = 0u;  // of this lane
+uint most_waiting = 0u;   // of no lane more; the same in all
 
 void settle_all(Ray ray, inout Nearest best, inout Shade shade) {
   while (any_lane(waiting_count > 0u)) {
@@ -29,12 +30,15 @@ void settle_all(Ray ray, inout Nearest best, inout Shade shade) {
 }
 
 void wait_for_material(Ray ray, Pending pending, inout Nearest best, inout Shade shade) {
-  if (!any_lane(pending.triangle != NO_INDEX)) return;
   if (pending.triangle != NO_INDEX) {
     waiting[waiting_count] = pending;
     ++waiting_count;
   }
-  if (any_lane(waiting_count == MOST_WAITING)) settle_all(ray, best, shade);
+  if (++most_waiting < MOST_WAITING) return;
+  most_waiting = to_uint(max_lanes(float(waiting_count)));
+  if (most_waiting < MOST_WAITING) return;
+  settle_all(ray, best, shade);
+  most_waiting = 0u;
 }
 
 void test_triangle(Corners corners, uint triangle, bool enters, Ray ray, Shear s, inout Nearest best, inout Shade shade,
@@ -56,7 +60,7 @@ void test_triangle(Corners corners, uint triangle, bool enters, Ray ray, Shear s
 void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, inout Shade shade, inout Tests tests) {
   bool apart = 1.7 * max_lanes(float(bitCount(own))) < float(bitCount(leaves));
   uint todo = apart ? own : leaves;
-  while (any_lane(todo != 0u)) {
+  while (apart ? any_lane(todo != 0u) : todo != 0u) {
     bool has = todo != 0u;
     uint slot = has ? lowest_bit(todo) : 0u, leaf;
     if (apart)
@@ -65,7 +69,7 @@ void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, in
       leaf = child_together(slot);
     todo &= todo - (has ? 1u : 0u);
     uint triangle = leaf_first(leaf), last = has ? triangle + leaf_count(leaf) : triangle;
-    while (any_lane(triangle < last)) {
+    while (apart ? any_lane(triangle < last) : triangle < last) {
       bool there = triangle < last;
       Corners corners;
       if (apart)
