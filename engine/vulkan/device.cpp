@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <thread>
 
 #include "core/error.hpp"
@@ -140,27 +141,42 @@ std::uint32_t choose(const std::vector<vk::raii::PhysicalDevice>& physical, cons
   return best;
 }
 
+struct Opened {
+  vk::raii::Instance instance;
+  std::vector<vk::raii::PhysicalDevice> devices;
+  std::vector<DeviceSummary> summaries;
+
+  Opened(const vk::raii::Context& context, Validation validation)
+      : instance(make_instance(context, validation)), devices(instance.enumeratePhysicalDevices()) {
+    for (std::uint32_t i = 0; i < devices.size(); ++i) summaries.push_back(summarise(devices[i], i));
+  }
+};
+
 }  // namespace
 
 std::vector<DeviceSummary> Device::list() {
   vk::raii::Context context;
-  const auto instance = make_instance(context, Validation::off);
-  std::vector<DeviceSummary> result;
-  std::uint32_t index = 0;
-  for (const auto& physical : instance.enumeratePhysicalDevices()) result.push_back(summarise(physical, index++));
-  return result;
+  auto opened = std::make_unique<Opened>(context, Validation::off);
+  if (std::any_of(opened->devices.begin(), opened->devices.end(), suit_vectors)) {
+    opened.reset();
+    opened = std::make_unique<Opened>(context, Validation::off);
+  }
+  return opened->summaries;
 }
 
 Device::Device(const std::string& selector) {
   const Validation validation = validation_wanted();
-  instance_ = make_instance(context_, validation);
+  auto opened = std::make_unique<Opened>(context_, validation);
+  std::uint32_t chosen = choose(opened->devices, opened->summaries, selector);
+  if (suit_vectors(opened->devices[chosen])) {
+    opened.reset();
+    opened = std::make_unique<Opened>(context_, validation);
+    chosen = choose(opened->devices, opened->summaries, std::to_string(chosen));
+  }
+  instance_ = std::move(opened->instance);
   if (validation != Validation::off) messenger_ = make_messenger(instance_);
-  auto devices = instance_.enumeratePhysicalDevices();
-  std::vector<DeviceSummary> all;
-  for (std::uint32_t i = 0; i < devices.size(); ++i) all.push_back(summarise(devices[i], i));
-  const std::uint32_t chosen = choose(devices, all, selector);
-  physical_ = std::move(devices[chosen]);
-  summary_ = all[chosen];
+  physical_ = std::move(opened->devices[chosen]);
+  summary_ = std::move(opened->summaries[chosen]);
   queue_family_ = compute_graphics_family(physical_);
 
   const auto properties = physical_.getProperties();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "vulkan/vector_width.hpp"
 
 namespace sheaf {
 namespace {
@@ -26,16 +25,6 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     std::fprintf(stderr, "vulkan validation: %s\n", data->pMessage);
   }
   return VK_FALSE;
-}
-
-vk::raii::Instance create(const vk::raii::Context& context, const vk::InstanceCreateInfo& info) {
-  try {
-    return {context, info};
-  } catch (const vk::LayerNotPresentError&) {
-    throw Error(ErrorKind::device, "Vulkan: SHEAF_VALIDATION is set but the validation layer is not installed");
-  } catch (const vk::SystemError& error) {
-    throw Error(ErrorKind::device, std::string("Vulkan: no instance (is a driver installed?): ") + error.what());
-  }
 }
 
 }  // namespace
@@ -63,10 +52,13 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, Validation va
   const vk::ValidationFeaturesEXT features(more);
   vk::InstanceCreateInfo info({}, &application, layers, extensions);
   if (!more.empty()) info.pNext = &features;
-  auto instance = create(context, info);
-  if (!suit_vectors(instance)) return instance;
-  instance.clear();
-  return create(context, info);
+  try {
+    return {context, info};
+  } catch (const vk::LayerNotPresentError&) {
+    throw Error(ErrorKind::device, "Vulkan: SHEAF_VALIDATION is set but the validation layer is not installed");
+  } catch (const vk::SystemError& error) {
+    throw Error(ErrorKind::device, std::string("Vulkan: no instance (is a driver installed?): ") + error.what());
+  }
 }
 
 vk::raii::DebugUtilsMessengerEXT make_messenger(const vk::raii::Instance& instance) {

@@ -30,23 +30,6 @@ bool cpu_computes_512_bits_at_once() {
 #endif
 }
 
-struct Vectors {
-  std::uint32_t bits = 0;  // 0: no llvmpipe
-  bool gain = false;
-};
-
-Vectors vectors_of(const vk::raii::Instance& instance) {
-  for (const auto& physical : instance.enumeratePhysicalDevices()) {
-    const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
-                                               vk::PhysicalDeviceSubgroupProperties>();
-    const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
-    if (driver.driverID == vk::DriverId::eMesaLlvmpipe)
-      return {chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize * 32,
-              driver_gains_from_wide_vectors(driver.driverInfo.data())};
-  }
-  return {};
-}
-
 std::string environment(const char* name) {
   const char* const value = std::getenv(name);
   return value != nullptr ? value : "";
@@ -76,12 +59,16 @@ std::string kernel_cache_folder(std::uint32_t bits) {
   return home.empty() ? "" : home + "/.cache/sheaf" + own;
 }
 
-bool suit_vectors(const vk::raii::Instance& instance) {
-  const bool said = vector_width_is_given();
-  if (!said && !cpu_computes_512_bits_at_once()) return false;
-  const Vectors now = vectors_of(instance);
-  const std::uint32_t wanted = !said && now.gain && now.bits == own_bits ? wide_bits : now.bits;
-  if (wanted == 0 || wanted == own_bits) return false;
+bool suit_vectors(const vk::raii::PhysicalDevice& physical) {
+  const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                                             vk::PhysicalDeviceSubgroupProperties>();
+  const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
+  if (driver.driverID != vk::DriverId::eMesaLlvmpipe) return false;
+  const std::uint32_t bits = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize * 32;
+  const bool widens = !vector_width_is_given() && bits == own_bits && cpu_computes_512_bits_at_once() &&
+                      driver_gains_from_wide_vectors(driver.driverInfo.data());
+  if (!widens && (bits == own_bits || !vector_width_is_given())) return false;
+  const std::uint32_t wanted = widens ? wide_bits : bits;
   const std::string folder = kernel_cache_folder(wanted);
   if (folder.empty() || folder == environment(cache_variable)) return false;
   std::error_code ignored;  // then kernels are not kept

@@ -22,7 +22,8 @@ namespace sheaf {
 
 /// Asks for vectors of 512 bits where they pay and the user has not said how wide they are to be; and for a cache of
 /// kernels of their own where they are not as wide as the driver's: it takes no account of the width there (seen with
-/// Mesa 25.0.7: sorted lists came out wrong). True where that only holds for an instance made anew.
-[[nodiscard]] bool suit_vectors(const vk::raii::Instance& instance);
+/// Mesa 25.0.7: sorted lists came out wrong). True where that only holds for an instance made anew, with none
+/// left of the old.
+[[nodiscard]] bool suit_vectors(const vk::raii::PhysicalDevice& physical);
 
 }  // namespace sheaf
