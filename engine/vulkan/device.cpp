@@ -152,15 +152,19 @@ struct Opened {
   }
 };
 
+// A driver reads its environment again only where no instance is left of the old.
+void open_anew(std::unique_ptr<Opened>& opened, const vk::raii::Context& context, Validation validation) {
+  opened.reset();
+  opened = std::make_unique<Opened>(context, validation);
+}
+
 }  // namespace
 
 std::vector<DeviceSummary> Device::list() {
   vk::raii::Context context;
   auto opened = std::make_unique<Opened>(context, Validation::off);
-  if (std::any_of(opened->devices.begin(), opened->devices.end(), suit_vectors)) {
-    opened.reset();
-    opened = std::make_unique<Opened>(context, Validation::off);
-  }
+  if (std::any_of(opened->devices.begin(), opened->devices.end(), suit_vectors))
+    open_anew(opened, context, Validation::off);
   return opened->summaries;
 }
 
@@ -169,8 +173,7 @@ Device::Device(const std::string& selector) {
   auto opened = std::make_unique<Opened>(context_, validation);
   std::uint32_t chosen = choose(opened->devices, opened->summaries, selector);
   if (suit_vectors(opened->devices[chosen])) {
-    opened.reset();
-    opened = std::make_unique<Opened>(context_, validation);
+    open_anew(opened, context_, validation);
     chosen = choose(opened->devices, opened->summaries, std::to_string(chosen));
   }
   instance_ = std::move(opened->instance);

@@ -51,7 +51,8 @@ bool driver_gains_from_wide_vectors(const std::string& driver_info) {
 bool vector_width_is_given() { return std::getenv(width_variable) != nullptr; }
 
 std::string kernel_cache_folder(std::uint32_t bits) {
-  const std::string given = environment(cache_variable), own = "/vectors_" + std::to_string(bits);
+  std::string given = environment(cache_variable);
+  const std::string own = "/vectors_" + std::to_string(bits);
   if (given.ends_with(own)) return given;
   if (!given.empty()) return given + own;
   const std::string caches = environment("XDG_CACHE_HOME"), home = environment("HOME");
@@ -65,9 +66,11 @@ bool suit_vectors(const vk::raii::PhysicalDevice& physical) {
   const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
   if (driver.driverID != vk::DriverId::eMesaLlvmpipe) return false;
   const std::uint32_t bits = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize * 32;
-  const bool widens = !vector_width_is_given() && bits == own_bits && cpu_computes_512_bits_at_once() &&
+  const bool given = vector_width_is_given();
+  const bool widens = !given && bits == own_bits && cpu_computes_512_bits_at_once() &&
                       driver_gains_from_wide_vectors(driver.driverInfo.data());
-  if (!widens && (bits == own_bits || !vector_width_is_given())) return false;
+  // What the driver takes by itself, also on a CPU with less than AVX, it keeps in its own place.
+  if (!widens && (!given || bits == own_bits)) return false;
   const std::uint32_t wanted = widens ? wide_bits : bits;
   const std::string folder = kernel_cache_folder(wanted);
   if (folder.empty() || folder == environment(cache_variable)) return false;

@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 
@@ -50,7 +52,8 @@ std::string environment(const char* name) {
   return value ? value : "";
 }
 
-/// Folders where drivers keep compiled shaders; made here, since a worker may not make them.
+/// Folders where drivers keep compiled shaders, and where the engine has them keep those of other widths
+/// (kernel_cache_folder() in engine/vulkan/vector_width.hpp); made here, since a worker may not make them.
 std::vector<std::string> cache_folders() {
   const std::string home = environment("HOME"), xdg = environment("XDG_CACHE_HOME"),
                     mesa = environment("MESA_SHADER_CACHE_DIR");
@@ -112,10 +115,11 @@ unsigned Confinement::apply() const noexcept {
     // It may also be the niceness; either way the worker goes on.
   }
   // SIGXCPU says what it was; SIGKILL follows for a worker that will not hear.
-  if (limit(RLIMIT_CORE, 0, 0) & limit(RLIMIT_DATA, options_.memory_bytes, options_.memory_bytes) &
-      limit(RLIMIT_CPU, options_.cpu_seconds, options_.cpu_seconds + 5) &
-      limit(RLIMIT_FSIZE, options_.file_bytes, options_.file_bytes) & limit(RLIMIT_NOFILE, open_files, open_files))
-    held |= limits;
+  const std::array set{limit(RLIMIT_CORE, 0, 0), limit(RLIMIT_DATA, options_.memory_bytes, options_.memory_bytes),
+                       limit(RLIMIT_CPU, options_.cpu_seconds, options_.cpu_seconds + 5),
+                       limit(RLIMIT_FSIZE, options_.file_bytes, options_.file_bytes),
+                       limit(RLIMIT_NOFILE, open_files, open_files)};  // the others also where one cannot be
+  if (std::find(set.begin(), set.end(), false) == set.end()) held |= limits;
   if (!options_.on) return held;
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) held |= no_new_privileges;
   if (ruleset_.valid() && FileRules::enforce(ruleset_.get())) held |= files;
