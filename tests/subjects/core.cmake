@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+sheaf_test(quote_test sheaf_options)
