@@ -42,7 +42,7 @@ FrameNames::FrameNames(const std::string& pattern) : pattern_(pattern) {
 std::string FrameNames::stem(std::int64_t number) const {
   std::string digits = std::to_string(number);
   const std::size_t sign = number < 0 ? 1 : 0;
-  if (digits.size() - sign < digits_) digits.insert(sign, digits_ - (digits.size() - sign), '0');
+  if (digits.size() < digits_) digits.insert(sign, digits_ - digits.size(), '0');
   return before_ + digits + after_;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // File names of frames from `--name PATTERN`: one run of '#' stands for the frame number, zero-padded to the run's
-// length. A longer number is written whole; a negative one is its sign and then the padded digits: -12 in #### is
-// -0012.
+// length, the sign included, as printf's %04d writes it: -12 in #### is -012. A longer number is written whole.
 #pragma once
 
 #include <cstddef>

@@ -28,6 +28,12 @@ def test_file_names(sheaf):
     assert sorted(p.name for p in run.out.iterdir()) == ["hierarchy.0007.exr", "hierarchy.12345.exr"]
 
 
+def test_negative_numbers_are_padded_as_printf_does(sheaf):
+    run = sheaf.render("hierarchy", "--frames=-12--10,-2,3,-12345", "--preview", **TINY)
+    assert {p.name for p in run.out.iterdir()} == {f"hierarchy.{'%04d' % n}.{kind}"
+                                                   for n in (-12, -11, -10, -2, 3, -12345) for kind in ("exr", "png")}
+
+
 def test_time_is_frame_by_fps(sheaf):
     """Frame 12 at 24 a second is frame 24 at 48: half a second, wherever it stands."""
     a = sheaf.render("interpolation", "--frames", "12", size="32x16").frame()

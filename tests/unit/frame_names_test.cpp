@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "output/frame_names.hpp"
 
+#include <array>
+#include <cstdio>
+
 #include "output_support.hpp"
 
 namespace sheaf {
@@ -25,8 +28,14 @@ TEST(FrameNames, WritesLongerNumbersWhole) {
   EXPECT_EQ(FrameNames("f##.exr").frame(-12345), "f-12345.exr");
 }
 
-TEST(FrameNames, SignComesBeforeThePadding) {
-  EXPECT_EQ(FrameNames("f.####.exr").frame(-12), "f.-0012.exr");
+TEST(FrameNames, PadsNegativesAsPrintf) {
+  for (const std::int64_t number : {-1, -12, -123, -1234, -12345, 0, 7}) {
+    std::array<char, 32> expected{};
+    std::snprintf(expected.data(), expected.size(), "f.%04lld.exr", static_cast<long long>(number));
+    EXPECT_EQ(FrameNames("f.####.exr").frame(number), expected.data());
+  }
+  EXPECT_EQ(FrameNames("f.####.exr").frame(-2), "f.-002.exr");
+  EXPECT_EQ(FrameNames("f.##.exr").preview(-2), "f.-2.png");
   EXPECT_EQ(FrameNames("f#.exr").preview(-1), "f-1.png");
 }
 

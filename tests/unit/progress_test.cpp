@@ -34,7 +34,7 @@ TEST_F(ProgressTest, JsonIsOneFlushedObjectALine) {
   Progress progress(ProgressMode::json, json_, text_);
   progress.start(3);
   EXPECT_EQ(events(), (std::vector<json>{{{"event", "start"}, {"frames", 3}, {"version", SHEAF_VERSION}}}));
-  progress.frame_done(-12, "out/a.-0012.exr", 500);
+  progress.frame_done(-12, "out/a.-012.exr", 500);
   progress.warning("line\nbreak and \xff byte");
   progress.error(3, "scene.glb: nodes[2]: bad");
   progress.finish();
@@ -46,7 +46,7 @@ TEST_F(ProgressTest, JsonIsOneFlushedObjectALine) {
                           {"total", 3},
                           {"wall_ms", 500.0},
                           {"eta_s", 1.0},
-                          {"file", "out/a.-0012.exr"}}));
+                          {"file", "out/a.-012.exr"}}));
   EXPECT_EQ(all[2], (json{{"event", "warning"}, {"message", "line\nbreak and \uFFFD byte"}}));
   EXPECT_EQ(all[3], (json{{"event", "error"}, {"code", 3}, {"message", "scene.glb: nodes[2]: bad"}}));
   EXPECT_EQ(all[4]["event"], "done");

@@ -12,6 +12,8 @@ _PATTERN = re.compile(r"([^#/\\]*)(#+)([^#/\\]*)\.exr")
 class FrameNames:
     """A name pattern: one run of `#` stands for the frame number, padded with zeros to the run's length.
 
+    A sign counts: -12 in #### is -012, as printf's %04d writes it.
+
     Raises:
         ValueError: no run of `#` or several, a separator or control character, or another ending than .exr.
     """
@@ -32,8 +34,7 @@ class FrameNames:
         return self._stem(number) + ".png"
 
     def _stem(self, number: int) -> str:
-        sign = "-" if number < 0 else ""
-        return f"{self._before}{sign}{abs(number):0{self._digits}d}{self._after}"
+        return f"{self._before}{number:0{self._digits}d}{self._after}"
 
 
 def default_pattern(scene: str) -> str:
