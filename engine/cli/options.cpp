@@ -48,6 +48,15 @@ double parse_number(const std::string& option, const std::string& text, const st
   return value;
 }
 
+float parse_z_background(const std::string& text) {
+  char* end = nullptr;
+  const float value = std::strtof(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || std::isnan(value)) throw bad("z-background", text, "must be a number or inf");
+  if (std::isinf(value) && text.find_first_of("iI") == std::string::npos)
+    throw Error(ErrorKind::input, "--z-background " + text + ": must be at most 3.4e38, or inf");
+  return value;
+}
+
 double parse_fps(const std::string& text) {
   const auto slash = text.find('/');
   double fps = parse_number("fps", text, text.substr(0, slash));
@@ -110,6 +119,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                   "million copied triangles on")
       ->capture_default_str();
   command.add_option("--aov", o.layers, "layers: Z,N,P,albedo,UV,id,tests or all");
+  command.add_option("--z-background", o.z_background, "layer Z where nothing is hit: a number or inf")
+      ->capture_default_str();
   command.add_option("--compression", o.compression, "none, rle, zips, zip, piz, dwaa")->capture_default_str();
   command.add_option("--name", o.name, "file names; default <scene>.####.exr");
   command.add_option("--environment", o.environment,
@@ -145,6 +156,7 @@ void resolve_options(RenderOptions& o) {
       "instances", o.instances,
       {{"auto", InstancePolicy::automatic}, {"copied", InstancePolicy::copied}, {"shared", InstancePolicy::shared}});
   s.layers = parse_layers(o.layers);
+  s.z_background = parse_z_background(o.z_background);
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));
   if (!o.environment.empty()) s.environment = parse_color("environment", o.environment);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "frame/frame_attributes.hpp"
 
+#include <cmath>
+
 namespace sheaf {
 namespace {
 
@@ -32,6 +34,12 @@ nlohmann::ordered_json settings_json(const RenderSettings& s) {
                                           : s.primary == PrimaryMethod::trace ? "trace"
                                                                               : "auto"},
                               {"opaque", s.opaque}};
+  if (s.layers.depth) {  // JSON has no infinity
+    if (std::isinf(s.z_background))
+      json["z_background"] = s.z_background > 0 ? "inf" : "-inf";
+    else
+      json["z_background"] = s.z_background;
+  }
   if (s.samples.error) json["spp"] = text_of(s.samples);
   if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};
   return json;

@@ -44,7 +44,7 @@ class ReferenceFrames final : public FrameSource {
     allocate_layers(settings_.layers, l);
     for (std::size_t i = 0; i < frame.rgba.size(); ++i) {
       for (int c = 0; c < 4; ++c) l.rgba[i * 4 + c] = frame.rgba[i][c];
-      if (!l.depth.empty()) l.depth[i] = frame.depth[i];
+      if (!l.depth.empty()) l.depth[i] = frame.object[i] == 0 ? settings_.z_background : frame.depth[i];
       for (int c = 0; c < 3; ++c) {
         if (!l.normal.empty()) l.normal[i * 3 + c] = frame.normal[i][c];
         if (!l.position.empty()) l.position[i * 3 + c] = static_cast<float>(frame.position[i][c]);

@@ -69,7 +69,7 @@ void Renderer::store_tile(const Tile& tile, RenderedFrame& out) {
 
 void Renderer::store_counts(const Tile& tile, RenderedFrame& out) {
   if (layers_ && (!adaptive_ || adaptive_->first_sample() == 0))
-    Layers::store(memory_, tile, scene_->origin(), out.layers);
+    Layers::store(memory_, tile, scene_->origin(), settings_.z_background, out.layers);
   if (!out.layers.tests.empty()) {
     const auto tests = memory_.pixel_tests_readback.view<std::uint32_t>();
     for (std::uint32_t i = 0; i < tile.pixels(); ++i)

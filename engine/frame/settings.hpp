@@ -40,6 +40,7 @@ struct RenderSettings {
   InstancePolicy instances = InstancePolicy::automatic;
   bool opaque = false;
   LayerSet layers;
+  float z_background = 1e10F;       // of layer Z where nothing was hit
   std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame
   std::uint64_t memory_mib = 1024;  // for rays, pairs and what else scales with the picture, not with the scene
   std::optional<glm::vec3> environment;

@@ -19,12 +19,12 @@ enum class Compression { none, rle, zips, zip, piz, dwaa };
 /// Half channels are clamped to ±65504 and NaN becomes 0 there; float channels are written as they are.
 struct FrameLayers {
   std::uint32_t width = 0, height = 0;
-  std::vector<float> rgba;      // 4 a pixel: R G B A, half; linear Rec.709, premultiplied
-  std::vector<float> depth;     // Z, float: distance along the view axis in metres; +inf where nothing was hit
-  std::vector<float> normal;    // 3 a pixel: N.X N.Y N.Z, float, world space
-  std::vector<float> position;  // 3 a pixel: P.X P.Y P.Z, float, world space
-  std::vector<float> albedo;    // 3 a pixel: albedo.R albedo.G albedo.B, half
-  std::vector<float> uv;        // 2 a pixel: UV.X UV.Y, float
+  std::vector<float> rgba;                            // 4 a pixel: R G B A, half; linear Rec.709, premultiplied
+  std::vector<float> depth;                           // Z, float: distance along the view axis in metres
+  std::vector<float> normal;                          // 3 a pixel: N.X N.Y N.Z, float, world space
+  std::vector<float> position;                        // 3 a pixel: P.X P.Y P.Z, float, world space
+  std::vector<float> albedo;                          // 3 a pixel: albedo.R albedo.G albedo.B, half
+  std::vector<float> uv;                              // 2 a pixel: UV.X UV.Y, float
   std::vector<std::uint32_t> object_id, material_id;  // id.object, id.material
   std::vector<float> tests;                           // tests, float: intersection tests that the pixel cost
 };

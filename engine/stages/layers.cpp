@@ -37,7 +37,8 @@ void allocate_layers(const LayerSet& wanted, FrameLayers& layers) {
   if (wanted.tests) layers.tests.resize(pixels);
 }
 
-void Layers::store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, FrameLayers& out) {
+void Layers::store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, float z_background,
+                   FrameLayers& out) {
   const auto words = memory.layers_readback.view<float>();
   const std::size_t pixels = tile.pixels();
   auto spread = [&](std::vector<float>& to, std::uint32_t first, std::uint32_t channels, std::size_t from,
@@ -54,6 +55,7 @@ void Layers::store(const RayMemory& memory, const Tile& tile, const glm::dvec3& 
       spread(out.albedo, gpu::LAYER_ALBEDO, 3, from, at);
       spread(out.uv, gpu::LAYER_UV, 2, from, at);
       const auto object = std::bit_cast<std::uint32_t>(words[gpu::LAYER_OBJECT * pixels + from]);
+      if (!out.depth.empty() && object == 0) out.depth[at] = z_background;
       if (!out.position.empty() && object != 0)
         for (std::uint32_t c = 0; c < 3; ++c)
           out.position[at * 3 + c] =

@@ -14,8 +14,9 @@ class Layers {
  public:
   Layers(const Device& device, const Plan& plan, const Features& features);
   void record(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels) const;
-  /// From the read-back buffer into the frame; positions become absolute.
-  static void store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, FrameLayers& out);
+  /// From the read-back buffer into the frame; positions become absolute, and a miss's depth `z_background`.
+  static void store(const RayMemory& memory, const Tile& tile, const glm::dvec3& origin, float z_background,
+                    FrameLayers& out);
 
  private:
   Kernel layers_;

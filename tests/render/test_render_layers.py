@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from physics import box_of, close, inside, pixels, unit
-from rendering import Picture
+from rendering import Picture, scene_path
 
 TYPES = {"A": "float16", "B": "float16", "G": "float16", "R": "float16", "Z": "float32", "N.X": "float32", "N.Y": "float32",
          "N.Z": "float32", "P.X": "float32", "P.Y": "float32", "P.Z": "float32", "albedo.R": "float16", "albedo.G": "float16",
@@ -51,7 +51,7 @@ def test_a_roof(sheaf):
     close(picture.layer("albedo")[hit], (0.5, 0.5, 0.5))
     assert (picture.channels["id.object"][hit] == 2).all()  # node 0 is the sun
     assert (picture.channels["id.material"][hit] == 1).all()
-    assert np.isposinf(picture.layer("Z")[miss]).all()
+    assert (picture.layer("Z")[miss] == 1e10).all()  # as Blender has it
     for name in ("id.object", "id.material"):
         assert (picture.channels[name][miss] == 0).all()
     for name in ("N", "P", "albedo", "UV"):
@@ -151,3 +151,22 @@ def test_layers_are_of_the_first_sample(sheaf):
     np.testing.assert_allclose(depth[np.isfinite(depth)], 5, atol=1e-5)
     assert np.array_equal(np.isfinite(depth), picture.channels["id.object"] != 0)
     assert ((picture.alpha > 0) & (picture.alpha < 1)).any()
+
+
+@pytest.mark.parametrize("strategy", ["bvh", "reference"])
+@pytest.mark.parametrize(("given", "expected"), [("inf", np.inf), ("-1", -1.0), ("1e30", np.float32(1e30)), ("0", 0.0)])
+def test_depth_of_the_background_is_what_is_asked_for(sheaf, strategy, given, expected):
+    usual = sheaf.render("non_indexed", "--aov", "Z,id", strategy=strategy, size="48x24").frame()
+    picture = sheaf.render("non_indexed", "--aov", "Z,id", f"--z-background={given}", strategy=strategy,
+                           size="48x24").frame()
+    miss = picture.channels["id.object"] == 0
+    assert miss.any() and not miss.all()
+    assert (picture.channels["Z"][miss] == expected).all()
+    assert (usual.channels["Z"][miss] == 1e10).all()
+    assert np.array_equal(picture.channels["Z"][~miss], usual.channels["Z"][~miss])
+
+
+@pytest.mark.parametrize("given", ["nan", "far", "1e10x", "1e39", ""])
+def test_depth_of_the_background_is_a_number(sheaf, given):
+    run = sheaf("render", scene_path("non_indexed"), "--out", sheaf.folder / "out", f"--z-background={given}", code=(2, 3))
+    assert "z-background" in run.stderr
