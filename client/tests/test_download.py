@@ -154,7 +154,9 @@ def test_numbers_in_names() -> None:
     from sheaf._names import FrameNames, default_pattern
 
     names = FrameNames("a.##.b.exr")
-    assert [names.frame(number) for number in (7, 123, -5)] == ["a.07.b.exr", "a.123.b.exr", "a.-05.b.exr"]
+    assert [names.frame(number) for number in (7, 123, -5)] == ["a.07.b.exr", "a.123.b.exr", "a.-5.b.exr"]
+    for number in (-12345, -123, -2, 0, 12):
+        assert FrameNames("####.exr").frame(number) == "%04d.exr" % number  # noqa: UP031 - the very format
     assert default_pattern("dir/box.glb") == "box.####.exr"
     assert default_pattern("a#b\n.glb") == "a_b_.####.exr"
 
@@ -186,3 +188,40 @@ def test_after_a_failure_nothing_more_is_begun(
     with pytest.raises(sheaf.NotFound):
         client.job("many").download(tmp_path, connections=1)
     assert len(service.asked("GET .*exr")) < 50
+
+
+def test_links_stay_and_fifos_are_written_through(client: sheaf.Client, done_job: FakeJob, tmp_path: Path) -> None:
+    far, fifo = tmp_path / "far", tmp_path / "out" / "box.0003.exr"
+    fifo.parent.mkdir()
+    far.mkdir()
+    (tmp_path / "link").symlink_to("far")
+    os.mkfifo(fifo)
+    got: list[bytes] = []
+    reader = threading.Thread(target=lambda: got.append(fifo.read_bytes()), daemon=True)
+    reader.start()
+    client.job("abc").download(fifo.parent, numbers=[3])
+    reader.join(60)
+    assert got == [done_job.frames[3]]
+    assert fifo.is_fifo()
+    named = tmp_path / "box.0003.exr"
+    named.symlink_to("link/frame")
+    client.job("abc").download(tmp_path, numbers=[3])
+    assert named.is_symlink()
+    assert (far / "frame").read_bytes() == done_job.frames[3]
+    assert [path.name for path in far.iterdir()] == ["frame"]
+
+
+def test_texts_are_written_through_links_and_descriptors(tmp_path: Path) -> None:
+    from sheaf._files import write_whole
+
+    (tmp_path / "link").symlink_to("file")
+    write_whole(tmp_path / "link", "text")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "file").read_text() == "text"
+    with (tmp_path / "log").open("wb") as log:
+        log.write(b"before ")
+        log.flush()
+        write_whole(Path(f"/dev/fd/{log.fileno()}"), "text ")
+        log.write(b"after")
+    assert (tmp_path / "log").read_bytes() == b"before text after"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link", "log"]

@@ -165,6 +165,7 @@ void Job::finish_writing() {
 
 void Job::save_stats(bool last) {
   if (options_.stats.empty() || (!last && milliseconds_since(saved_) < 1000)) return;
+  if (!last && find_write_target(options_.stats).is_stream) return;  // a stream's reader gets one document
   write_stats(options_.stats, stats_);
   saved_ = Clock::now();
 }

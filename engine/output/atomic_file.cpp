@@ -88,10 +88,14 @@ bool remove_if_stale(const std::string& path, pid_t writer) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(find_write_target(path_)) {
   if (std::filesystem::path(path_).filename().empty()) fail("cannot create", EISDIR);
+  if (!target_.is_stream) create_part();
+}
+
+void AtomicFile::create_part() {
   for (int attempt = 1; attempt <= max_attempts; ++attempt) {
-    temporary_path_ = part_name(path_, attempt);
+    temporary_path_ = part_name(target_.path, attempt);
     const int descriptor = open(temporary_path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0) fail("cannot create", errno);
     if (try_lock(descriptor) != LockState::taken_by_other && still_named(descriptor, temporary_path_)) {
@@ -122,7 +126,7 @@ void AtomicFile::fail(const std::string& doing, int error_number) {
 
 void AtomicFile::check_writable() const {
   if (!failure_.empty()) throw io_error(path_, failure_);
-  if (descriptor_ < 0) throw io_error(path_, "already written");
+  if (done_) throw io_error(path_, "already written");
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -137,7 +141,15 @@ void AtomicFile::seek(std::uint64_t position) {
   position_ = position;
 }
 
+void AtomicFile::keep() {
+  if (kept_.size() < position_ + buffer_.size()) kept_.resize(position_ + buffer_.size());
+  std::copy(buffer_.begin(), buffer_.end(), kept_.begin() + static_cast<std::ptrdiff_t>(position_));
+  position_ += buffer_.size();
+  buffer_.clear();
+}
+
 void AtomicFile::flush() {
+  if (target_.is_stream) return keep();
   std::size_t done = 0;
   while (done < buffer_.size()) {
     const ssize_t written =
@@ -153,10 +165,16 @@ void AtomicFile::flush() {
 void AtomicFile::commit() {
   check_writable();
   flush();
+  if (target_.is_stream) {
+    if (const int error = write_to_stream(target_, kept_); error != 0) fail("cannot write", error);
+    done_ = true;
+    return;
+  }
   if (fsync(descriptor_) != 0) fail("cannot write", errno);
-  if (rename(temporary_path_.c_str(), path_.c_str()) != 0) fail("cannot rename into place", errno);
+  if (rename(temporary_path_.c_str(), target_.path.c_str()) != 0) fail("cannot rename into place", errno);
   // Only now, since closing gives up the lock that keeps cleaners away.
   close(std::exchange(descriptor_, -1));
+  done_ = true;
 }
 
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
@@ -167,12 +185,6 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
 
 void write_file_atomically(const std::string& path, const std::string& text) {
   write_file_atomically(path, std::as_bytes(std::span(text)));
-}
-
-void write_file_atomically(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
-  AtomicFile file(path);
-  write(file.temporary_path());
-  file.commit();
 }
 
 std::size_t remove_stale_parts(const std::string& directory) {

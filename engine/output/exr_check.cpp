@@ -7,6 +7,7 @@
 #include <ImfInputFile.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ void decode(Imf::InputFile& file, int width, int height) {
 
 bool exr_is_whole(const std::string& path, std::uint32_t width, std::uint32_t height) noexcept {
   try {
+    if (!std::filesystem::is_regular_file(path)) return false;  // nor waits for the writer of a FIFO
     constexpr int threads = 0;
     Imf::InputFile file(path.c_str(), threads);
     const Imf::Header& header = file.header();

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "output/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <csignal>
+#include <future>
 
 #include "output_support.hpp"
 
@@ -76,16 +79,75 @@ TEST_F(AtomicFileTest, KeepsBytesAcrossItsBuffer) {
   EXPECT_EQ(contents(path("a")), big);
 }
 
-TEST_F(AtomicFileTest, CallbackWritesUnderTheTemporaryName) {
-  write_file_atomically(path("a"), [](const std::string& temporary) { put(temporary, "by name"); });
-  EXPECT_EQ(contents(path("a")), "by name");
-  EXPECT_THROW(write_file_atomically(path("b"),
-                                     [](const std::string& temporary) {
-                                       put(temporary, "half");
-                                       throw std::runtime_error("stopped");
-                                     }),
-               std::runtime_error);
-  EXPECT_EQ(names(), Names{"a"});
+TEST_F(AtomicFileTest, LinkStaysAndItsEndIsReplaced) {
+  std::filesystem::create_directory(path("far"));
+  put(path("far/file"), "old");
+  std::filesystem::create_symlink("far/file", path("near"));
+  std::filesystem::create_symlink(path("near"), path("link"));
+  {
+    AtomicFile file(path("link"));
+    file.write(std::as_bytes(std::span(std::string_view("new"))));
+    EXPECT_EQ(contents(path("far/file")), "old");
+    file.commit();
+  }
+  EXPECT_EQ(std::filesystem::read_symlink(path("link")), path("near"));
+  EXPECT_EQ(std::filesystem::read_symlink(path("near")), "far/file");
+  EXPECT_FALSE(std::filesystem::is_symlink(path("far/file")));
+  EXPECT_EQ(contents(path("far/file")), "new");
+  EXPECT_EQ(names(), (Names{"far", "link", "near"}));
+}
+
+TEST_F(AtomicFileTest, DanglingLinkGetsItsFileAndALoopIsNamed) {
+  std::filesystem::create_symlink("later", path("link"));
+  write_file_atomically(path("link"), std::string("x"));
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link")));
+  EXPECT_EQ(contents(path("later")), "x");
+  std::filesystem::create_symlink("no/later", path("lost"));
+  EXPECT_EQ(error_of(ErrorKind::io, [&] { write_file_atomically(path("lost"), std::string("x")); }),
+            path("lost") + ": cannot create: No such file or directory");
+  EXPECT_TRUE(std::filesystem::is_symlink(path("lost")));
+}
+
+TEST_F(AtomicFileTest, FifoGetsTheWholeFileOnceCommitted) {
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::filesystem::create_symlink("fifo", path("link"));
+  for (const char* name : {"fifo", "link"}) {
+    auto reader = std::async(std::launch::async, [&] { return contents(path("fifo")); });
+    {
+      AtomicFile file(path(name));
+      const auto write = [&](std::string_view text) { file.write(std::as_bytes(std::span(text))); };
+      write("0000rest");
+      file.seek(1);  // as chunk tables need
+      write("12");
+      file.commit();
+      EXPECT_THROW(write("more"), Error);
+    }
+    EXPECT_EQ(reader.get(), "0120rest");
+  }
+  struct stat status {};
+  ASSERT_EQ(lstat(path("fifo").c_str(), &status), 0);
+  EXPECT_TRUE(S_ISFIFO(status.st_mode));
+  EXPECT_EQ(names(), (Names{"fifo", "link"}));
+}
+
+TEST_F(AtomicFileTest, ReaderThatGoesAwayIsAnErrorAndNoSignal) {
+  std::array<int, 2> pipe_ends{};
+  ASSERT_EQ(pipe(pipe_ends.data()), 0);
+  close(pipe_ends[0]);
+  const std::string at = "/dev/fd/" + std::to_string(pipe_ends[1]);
+  EXPECT_EQ(error_of(ErrorKind::io, [&] { write_file_atomically(at, std::string("x")); }),
+            at + ": cannot write: Broken pipe");
+  close(pipe_ends[1]);
+}
+
+TEST_F(AtomicFileTest, OpenDescriptorIsWrittenWhereItStands) {
+  const int descriptor = open(path("log").c_str(), O_RDWR | O_CREAT, 0600);
+  ASSERT_EQ(write(descriptor, "first ", 6), 6);
+  write_file_atomically("/dev/fd/" + std::to_string(descriptor), std::string("second "));
+  ASSERT_EQ(write(descriptor, "third", 5), 5);
+  close(descriptor);
+  EXPECT_EQ(contents(path("log")), "first second third");
+  EXPECT_EQ(names(), Names{"log"});
 }
 
 TEST_F(AtomicFileTest, TwoWritersOfOneNameDoNotMix) {

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Downloads to files that appear under their name only when they are whole."""
+"""Downloads to files that appear under their name only when they are whole.
+
+A symbolic link stays, and what it leads to is replaced; a FIFO or a device is written once all is there.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +11,29 @@ import hashlib
 import os
 import re
 import secrets
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 import httpx
 
 from ._errors import TransportError
 from ._http import check_length
+from ._targets import find_write_target
 
 
 class WholeFile:
     """Receives an answer's body beside its target, and takes the target's name once it is whole."""
 
     def __init__(self, target: Path) -> None:
-        self._part = _part_name(target)
-        self._file = self._part.open("xb")
-        self._target = target
+        self._target = find_write_target(target)
+        self._part = None if self._target.is_stream else _part_name(self._target.path)
+        self._file: IO[bytes] = (
+            tempfile.TemporaryFile()  # noqa: SIM115 - closed by `discard`
+            if self._part is None
+            else self._part.open("xb")
+        )
         self._received = 0
         self._digest = hashlib.sha256()
 
@@ -43,15 +53,20 @@ class WholeFile:
         announced = {sha256, sha256_of(response)} - {None}
         if announced - {self._digest.hexdigest()}:
             raise TransportError(f"{response.request.url}: the bytes that came are not those of its checksum")
+        if self._part is None:
+            self._file.seek(0)
+            self._target.send(self._file.read())
+            return
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
-        self._part.replace(self._target)
+        self._part.replace(self._target.path)
 
     def discard(self) -> None:
         """Removes what is there of an unfinished file; does nothing after `finish`."""
         self._file.close()
-        self._part.unlink(missing_ok=True)
+        if self._part is not None:
+            self._part.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager
@@ -71,10 +86,14 @@ def write_whole(target: Path, text: str) -> None:
 
 def write_whole_bytes(target: Path, data: bytes) -> None:
     """Writes a file, whole or not at all."""
-    part = _part_name(target)
+    end = find_write_target(target)
+    if end.is_stream:
+        end.send(data)
+        return
+    part = _part_name(end.path)
     try:
         part.write_bytes(data)
-        part.replace(target)
+        part.replace(end.path)
     finally:
         part.unlink(missing_ok=True)
 
