@@ -7,6 +7,7 @@
 #include "common.glsl"
 #include "rays.glsl"
 #include "memory.glsl"
+#include "unit.glsl"
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_DYNAMIC, writeonly, vec3, dynamic_vertices);
 BUFFER(ROLE_DEFORM, readonly, Deform, deforms);
@@ -51,8 +52,10 @@ void main() {
   vec4 r0, r1, r2;
   if (d.joint_words != NO_INDEX) {
     blended_matrix(d, v, r0, r1, r2);
-    vec3 c0 = cross(r1.xyz, r2.xyz), c1 = cross(r2.xyz, r0.xyz), c2 = cross(r0.xyz, r1.xyz);  // cofactors, row by row
-    float sign_of = dot(r0.xyz, c0) < 0.0 ? -1.0 : 1.0;
+    float scale = inverse_scale(max_of(max(max(abs(r0.xyz), abs(r1.xyz)), abs(r2.xyz))));
+    vec3 s0 = scale * r0.xyz, s1 = scale * r1.xyz, s2 = scale * r2.xyz;
+    vec3 c0 = cross(s1, s2), c1 = cross(s2, s0), c2 = cross(s0, s1);  // cofactors, row by row
+    float sign_of = dot(s0, c0) < 0.0 ? -1.0 : 1.0;
     n = sign_of * vec3(dot(c0, n), dot(c1, n), dot(c2, n));
   } else {
     Instance i = instances[d.instance];
@@ -61,10 +64,9 @@ void main() {
     r2 = vec4(i.row2, i.translation.z);
     n = vec3(dot(i.normal0, n), dot(i.normal1, n), dot(i.normal2, n));
   }
-  float size = length(n);
   uint to = 3u * (d.dynamic + v);
   precise vec3 world = vec3(dot(r0.xyz, p), dot(r1.xyz, p), dot(r2.xyz, p)) + vec3(r0.w, r1.w, r2.w);
   dynamic_vertices[to] = world;
-  dynamic_vertices[to + 1u] = size > 0.0 ? n / size : vec3(0);
+  dynamic_vertices[to + 1u] = safe_normalize(n, vec3(0));
   dynamic_vertices[to + 2u] = vec3(dot(r0.xyz, t), dot(r1.xyz, t), dot(r2.xyz, t));
 }

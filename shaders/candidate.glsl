@@ -3,6 +3,7 @@
 // rays, light passes or does not. Every strategy's intersect goes through here.
 #include "attributes.glsl"
 #include "fresnel.glsl"
+#include "unit.glsl"
 
 // MASKED: some material has an alpha mask. TRANSLUCENT: some surface lets light through, shadow rays sum optical depth.
 layout(constant_id = SPEC_MASKED) const bool MASKED = true;
@@ -55,6 +56,7 @@ struct Shade {      // what a shadow ray has met so far
 
 const float LEAST_LIGHT = 2.4e-10;  // 2^-32: less is nothing
 const float MAX_STOPS = 65536.0;    // of one crossing: eight of them fit a 32-bit sum
+const float BLACK_STOPS = 128.0;    // of a crossing of a black volume: thousands fit, and each is more than LEAST_LIGHT
 
 ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STOPS) * float(OPTICAL_STEP))); }
 
@@ -72,10 +74,9 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   look_up_all(instance.material, TEXTURE_TRANSMISSION + 1u, uv0, uv1, texels);
   vec4 base = base_color_at(instance, m, v, b, texels[TEXTURE_BASE_COLOR]);
   if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
-  vec3 g = cross(corners.b - corners.a, corners.c - corners.a);
-  float cosine = dot(g, direction) / max(length(g), 1e-37) * instance.determinant_sign;
+  float cosine = dot(triangle_normal(corners.a, corners.b, corners.c, vec3(0)), direction) * instance.determinant_sign;
   vec3 passed = vec3(0);
-  if ((m.flags & (MATERIAL_TRANSMISSIVE | MATERIAL_UNLIT)) == MATERIAL_TRANSMISSIVE) {
+  if ((m.flags & MATERIAL_TRANSMISSIVE) != 0u) {
     float transmitted = clamp(m.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);
     float metal = clamp(m.metallic * texels[TEXTURE_METALLIC_ROUGHNESS].b, 0.0, 1.0);
     passed = (transmitted * (1.0 - metal) * (1.0 - fresnel(min(abs(cosine), 1.0), 1.0, m.ior))) * base.rgb;
@@ -85,8 +86,13 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   if (!(max(max(passed.x, passed.y), passed.z) > LEAST_LIGHT)) return false;
   stops += to_steps(-log2(clamp(passed, vec3(LEAST_LIGHT), vec3(1))));
   if (m.volume != 0u) {
-    float inside = tmax < INFINITY ? tmax - t : -t;
-    stops += to_steps(m.absorption * (cosine < 0.0 ? inside : -inside));
+    // What is more than MAX_STOPS over the whole way (that of a ray without an end: across the scene, whose largest coordinate
+    // is box_pad · 2^21) is that much, so that what entering adds and leaving takes away keep their difference.
+    float inside = tmax < INFINITY ? tmax - t : -t, way = tmax < INFINITY ? tmax : frame.box_pad * 8388608.0;
+    vec3 absorption = min(m.absorption, vec3(MAX_STOPS / max(way, 1e-30)));
+    vec3 more = absorption * (cosine < 0.0 ? inside : -inside);
+    for (uint c = 0u; c < 3u; ++c) more[c] = m.absorption[c] >= ABSORBS_ALL ? BLACK_STOPS : more[c];
+    stops += to_steps(more);
   }
   return true;
 }

@@ -16,8 +16,10 @@ using vec4 = glm::vec4;
 using uvec2 = glm::uvec2;
 using mat3 = glm::mat3;
 #define SHEAF_CONST inline constexpr uint
+#define SHEAF_CONST_FLOAT inline constexpr float
 #else
 #define SHEAF_CONST const uint
+#define SHEAF_CONST_FLOAT const float
 #endif
 
 SHEAF_CONST NO_INDEX = 0xFFFFFFFFu;
@@ -161,6 +163,9 @@ SHEAF_CONST CELL_STOPS = 1u, CELL_CROWDED = 2u;
 SHEAF_CONST PAIR_KEPT = 256u;
 SHEAF_CONST PAIR_OCTANT = 9u;  // its lowest bit
 
+// Of Material::absorption: nothing passes, however short the way. Finite, so that times 0 it is 0.
+SHEAF_CONST_FLOAT ABSORBS_ALL = 3e38f;
+
 SHEAF_CONST MATERIAL_MASK = 1u;
 SHEAF_CONST MATERIAL_BLEND = 2u;
 SHEAF_CONST MATERIAL_UNLIT = 4u;
@@ -218,7 +223,7 @@ struct Material {
   float alpha_cutoff;
   float transmission;
   float ior;
-  vec3 absorption;  // −log2(attenuation color) / distance: stops a metre
+  vec3 absorption;  // −log2(attenuation color) / distance: stops a metre, at most ABSORBS_ALL
   uint flags;
   uint volume;      // 1 … 255 for volumes, else 0; volume n is material n − 1 of the buffer
   uint id;          // material of the file + 1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Everything a hit needs to know about the surface there (SHADING.md, Geometry and Material).
 #include "attributes.glsl"
+#include "unit.glsl"
 #include "looks_together.glsl"
 
 layout(constant_id = SPEC_TEXTURED_NORMALS) const bool TEXTURED_NORMALS = true;
@@ -27,13 +28,6 @@ vec3 transform_direction(Instance i, vec3 v) { return vec3(dot(i.row0, v), dot(i
 vec3 transform_normal(Instance i, vec3 v) { return vec3(dot(i.normal0, v), dot(i.normal1, v), dot(i.normal2, v)); }
 
 const float MAX_SPREAD = 1e3;  // of a ray's cone: past it nothing has detail left
-
-float max_of(vec3 v) { return max(max(v.x, v.y), v.z); }
-
-vec3 safe_normalize(vec3 v, vec3 otherwise) {
-  float size = length(v);
-  return size > 0.0 && size < INFINITY ? v / size : otherwise;
-}
 
 vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
@@ -71,11 +65,14 @@ struct Slopes {  // what a step in the triangle's plane adds to the weights of v
 };
 
 Slopes slopes_of(vec3 e1, vec3 e2, vec3 along, vec3 across) {
+  float scale = inverse_scale(max_of(max(abs(e1), abs(e2))));
+  e1 *= scale;
+  e2 *= scale;
   vec3 n = cross(e1, e2);
   float area = length(n);
   vec3 unit = n / area;
-  Slopes s = Slopes(vec2(dot(cross(along, e2), unit), dot(cross(e1, along), unit)) / area,
-                    vec2(dot(cross(across, e2), unit), dot(cross(e1, across), unit)) / area);
+  Slopes s = Slopes(vec2(dot(cross(along, e2), unit), dot(cross(e1, along), unit)) / area * scale,
+                    vec2(dot(cross(across, e2), unit), dot(cross(e1, across), unit)) / area * scale);
   return area > 0.0 ? s : Slopes(vec2(0), vec2(0));
 }
 
@@ -140,7 +137,7 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   const float gamma7 = 4.172329e-7;
   s.point_error = gamma7 * (abs(v0 * b.x) + abs(v1 * b.y) + abs(v2 * b.z));
   s.reach = max_of(max(max(abs(v0 - point), abs(v1 - point)), abs(v2 - point)));
-  vec3 g = safe_normalize(cross(v1 - v0, v2 - v0), -direction) * instance.determinant_sign;
+  vec3 g = triangle_normal(v0, v1, v2, -direction) * instance.determinant_sign;
   TexturePoint point_uv;
   s.curvature = 0.0;
   if (TEXTURED) {

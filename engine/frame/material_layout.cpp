@@ -55,13 +55,17 @@ gpu::TextureUse lay_out_use(const Scene& scene, Images& images, const TextureUse
   return g;
 }
 
-// Stops (powers of two) of absorption a metre: color^(t/distance) = 2^(−stops·t).
+// Stops (powers of two) of absorption a metre: color^(t/distance) = 2^(−stops·t). A color of 0 lets nothing through at
+// any distance: ABSORBS_ALL.
 glm::vec3 absorption(const Material& material) {
   glm::vec3 stops(0);
   if (!(material.attenuation_distance < std::numeric_limits<float>::infinity()) || material.attenuation_distance <= 0)
     return stops;
-  for (int c = 0; c < 3; ++c)
-    stops[c] = -std::log2(std::clamp(material.attenuation_color[c], 1e-9F, 1.0F)) / material.attenuation_distance;
+  for (int c = 0; c < 3; ++c) {
+    const double color = std::min(material.attenuation_color[c], 1.0F);
+    const double exact = color > 0 ? -std::log2(color) / double{material.attenuation_distance} : gpu::ABSORBS_ALL;
+    stops[c] = static_cast<float>(std::min<double>(exact, gpu::ABSORBS_ALL));
+  }
   return stops;
 }
 
@@ -74,7 +78,7 @@ std::uint32_t flags_of(const Material& material, const RenderSettings& settings)
   if (settings.opaque) return flags;
   if (material.alpha_mode == AlphaMode::mask) flags |= gpu::MATERIAL_MASK;
   if (material.alpha_mode == AlphaMode::blend) flags |= gpu::MATERIAL_BLEND;
-  if (material.transmission > 0) flags |= gpu::MATERIAL_TRANSMISSIVE;
+  if (material.transmission > 0 && !material.unlit) flags |= gpu::MATERIAL_TRANSMISSIVE;
   if (is_volume(material, settings)) flags |= gpu::MATERIAL_VOLUME;
   return flags;
 }
@@ -86,7 +90,7 @@ gpu::Material lay_out_material(const Scene& scene, Images& images, const Materia
   g.metallic = m.metallic;
   g.roughness = m.roughness;
   g.alpha_cutoff = m.alpha_cutoff;
-  g.transmission = settings.opaque ? 0 : m.transmission;
+  g.transmission = settings.opaque || m.unlit ? 0 : m.transmission;
   g.ior = m.ior;
   g.absorption = absorption(m);
   g.flags = flags_of(m, settings);

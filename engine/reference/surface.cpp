@@ -61,7 +61,7 @@ std::uint32_t Surfaces::material_of(const Hit& hit) const {
 
 bool Surfaces::is_volume(std::uint32_t index) const {
   const Material& m = scene_.materials[index];
-  return !opaque_ && m.transmission > 0 && m.thickness > 0;
+  return !opaque_ && !m.unlit && m.transmission > 0 && m.thickness > 0;
 }
 
 glm::dvec4 Surfaces::base_color(const Point& p) const {
@@ -74,7 +74,7 @@ double Surfaces::coverage(const Point& p, double alpha) const {
 }
 
 double Surfaces::transmission(const Point& p) const {
-  if (opaque_) return 0;
+  if (opaque_ || p.material.unlit) return 0;
   return std::clamp(p.material.transmission * p.look_up(p.material.transmission_texture).r, 0.0, 1.0);
 }
 
@@ -175,12 +175,10 @@ glm::dvec3 Surfaces::transmittance(const Hit& hit, const glm::dvec3& direction) 
   const glm::dvec4 base = base_color(p);
   if (!opaque_ && p.material.alpha_mode == AlphaMode::mask && base.a < p.material.alpha_cutoff) return glm::dvec3(1);
   glm::dvec3 passed(0);
-  if (!p.material.unlit) {
-    const double metal = p.material.metallic * p.look_up(p.material.metallic_roughness_texture).b;
-    const double cosine = std::min(std::abs(glm::dot(front_normal(hit, -direction), direction)), 1.0);
-    const double share = transmission(p) * (1 - std::clamp(metal, 0.0, 1.0));
-    if (share > 0) passed = glm::dvec3(base) * (share * (1 - fresnel(cosine, 1, p.material.ior)));
-  }
+  const double metal = p.material.metallic * p.look_up(p.material.metallic_roughness_texture).b;
+  const double cosine = std::min(std::abs(glm::dot(front_normal(hit, -direction), direction)), 1.0);
+  const double share = transmission(p) * (1 - std::clamp(metal, 0.0, 1.0));
+  if (share > 0) passed = glm::dvec3(base) * (share * (1 - fresnel(cosine, 1, p.material.ior)));
   const double a = coverage(p, base.a);
   return glm::clamp((1 - a) + a * passed, 0.0, 1.0);
 }

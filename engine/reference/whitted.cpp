@@ -12,11 +12,11 @@ enum Kind : std::uint32_t { primary, shadow, reflection, refraction };
 
 double largest(const glm::dvec3& v) { return std::max(std::max(v.x, v.y), v.z); }
 
-/// −log2 of what a metre of the volume lets through.
+/// −log2 of what a metre of the volume lets through; infinite where that is nothing, at whatever distance.
 glm::dvec3 stops_a_metre(const Material& m) {
-  if (!(m.attenuation_distance < std::numeric_limits<float>::infinity())) return glm::dvec3(0);
-  const glm::dvec3 color = glm::clamp(glm::dvec3(m.attenuation_color), 1e-300, 1.0);  // black: dark, but not inf - inf
-  return -glm::log2(color) / std::max(static_cast<double>(m.attenuation_distance), 1e-300);
+  const double distance = m.attenuation_distance;
+  if (!(distance < infinity && distance > 0)) return glm::dvec3(0);
+  return -glm::log2(glm::clamp(glm::dvec3(m.attenuation_color), 0.0, 1.0)) / distance;
 }
 
 /// Snell about n, which faces d; false in total internal reflection.
@@ -137,7 +137,14 @@ glm::dvec3 Whitted::visibility(const Surface& s, const WorldLight& light, const 
     passed *= surfaces_.transmittance(hit, ray.direction);
     if (there && surfaces_.is_volume(material)) {
       const bool entered = glm::dot(surfaces_.front_normal(hit, -ray.direction), ray.direction) > 0;
-      stops += stops_a_metre(surfaces_.material(material)) * (entered ? hit.t : -hit.t);
+      const glm::dvec3 absorption = stops_a_metre(surfaces_.material(material));
+      for (int c = 0; c < 3; ++c) {
+        if (absorption[c] < infinity) {
+          stops[c] += absorption[c] * (entered ? hit.t : -hit.t);
+        } else {
+          passed[c] = 0;
+        }
+      }
     }
     return largest(passed) > 0;
   };
@@ -152,7 +159,7 @@ glm::dvec3 Whitted::visibility(const Surface& s, const WorldLight& light, const 
 glm::dvec3 Whitted::absorbed(const Pending& ray, const Surface& s, double t) const {
   std::uint32_t inside = ray.media.top();
   if (inside == none && s.volume && !s.front) inside = s.material;  // the camera was inside
-  return inside == none ? glm::dvec3(1) : glm::exp2(-stops_a_metre(surfaces_.material(inside)) * t);
+  return inside == none || !(t > 0) ? glm::dvec3(1) : glm::exp2(-stops_a_metre(surfaces_.material(inside)) * t);
 }
 
 void Whitted::transmit(const Surface& s, const glm::dvec3& weight, double mirror, double nv, const Pending& parent,
