@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "core/error.hpp"
+#include "core/quote.hpp"
 
 namespace {
 
@@ -19,6 +20,19 @@ int report(sheaf::Progress* progress, int code, const std::string& text) {
   else
     std::fprintf(stderr, "sheaf: %s\n", text.c_str());
   return code;
+}
+
+// CLI11 repeats arguments whole.
+std::string shown(std::string message, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    for (const std::string& text : {argument, argument.substr(argument.find('=') + 1)}) {
+      const std::size_t at = message.find(text);
+      if (text.size() > sheaf::quote_limit && at != std::string::npos)
+        message.replace(at, text.size(), sheaf::quote(text));
+    }
+  }
+  return sheaf::one_line(message);
 }
 
 int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
@@ -42,7 +56,7 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return report(nullptr, static_cast<int>(sheaf::ErrorKind::usage),
-                  std::string(error.what()) + " (see sheaf --help)");
+                  shown(error.what(), argc, argv) + " (see sheaf --help)");
   }
   if (devices->parsed()) return sheaf::run_devices(devices_json);
   if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, inspect_json);

@@ -7,12 +7,13 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 
 namespace sheaf {
 namespace {
 
 Error bad(const std::string& option, const std::string& value, const std::string& reason) {
-  return {ErrorKind::usage, "--" + option + " " + value + ": " + reason};
+  return {ErrorKind::usage, "--" + option + " " + quote(value) + ": " + reason};
 }
 
 void parse_size(const std::string& text, RenderSettings& settings) {
@@ -62,7 +63,7 @@ double parse_fps(const std::string& text) {
   double fps = parse_number("fps", text, text.substr(0, slash));
   if (slash != std::string::npos) fps /= parse_number("fps", text, text.substr(slash + 1));
   if (!(fps > 0 && fps <= 1e6))
-    throw Error(ErrorKind::input, "--fps " + text + ": must be above 0 and at most 1000000");
+    throw Error(ErrorKind::input, "--fps " + quote(text) + ": must be above 0 and at most 1000000");
   return fps;
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // One exception type for every failure a user can cause or meet. Its kind is the process exit code of `sheaf`
-// and is mapped to HTTP once, in the server; its text names the file, the place in it and the reason, on one line.
+// and is mapped to HTTP once, in the server; its text names the file, the place in it and the reason. It is one line of
+// valid UTF-8 whatever it repeats; a user's string in it is cut by core/quote.hpp.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "core/quote.hpp"
 
 namespace sheaf {
 
@@ -20,7 +23,7 @@ enum class ErrorKind : int {
 
 class Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& reason) : std::runtime_error(reason), kind_(kind) {}
+  Error(ErrorKind kind, const std::string& reason) : std::runtime_error(one_line(bounded_words(reason))), kind_(kind) {}
   [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
   [[nodiscard]] int exit_code() const noexcept { return static_cast<int>(kind_); }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 #include "frame/scene_bounds.hpp"
 
 namespace sheaf {
@@ -19,9 +20,10 @@ std::uint32_t find_camera_node(const Scene& scene, const std::string& selector) 
   std::size_t wanted = 0;
   const char* end = selector.data() + selector.size();
   if (std::from_chars(selector.data(), end, wanted).ptr == end && wanted < nodes.size()) return nodes[wanted];
-  std::string known;
-  for (const auto index : nodes) known += (known.empty() ? "" : ", ") + scene.nodes[index].name;
-  throw input_error(scene.path, "--camera-node " + selector + ": the scene has " + std::to_string(nodes.size()) +
+  std::vector<std::string> names;
+  for (const auto index : nodes) names.push_back(scene.nodes[index].name);
+  const std::string known = quoted_list(names);
+  throw input_error(scene.path, "--camera-node " + quote(selector) + ": the scene has " + std::to_string(nodes.size()) +
                                     " cameras" + (known.empty() ? "" : " (" + known + ")"));
 }
 

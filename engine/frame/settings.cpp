@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 #include "sampling/adaptive_pixels.hpp"
 
 namespace sheaf {
@@ -42,7 +43,7 @@ Strategy parse_strategy(const std::string& name) {
     if (name == text) return value;
     known += std::string(known.empty() ? "" : ", ") + text;
   }
-  throw Error(ErrorKind::usage, "--strategy " + name + ": there is " + known);
+  throw Error(ErrorKind::usage, "--strategy " + quote(name) + ": there is " + known);
 }
 
 const char* name_of(Strategy strategy) {
@@ -54,7 +55,7 @@ const char* name_of(Strategy strategy) {
 PixelFilter parse_filter(const std::string& name) {
   for (const auto& [value, text] : filters)
     if (name == text) return value;
-  throw Error(ErrorKind::usage, "--filter " + name + ": there is box, triangle, gaussian");
+  throw Error(ErrorKind::usage, "--filter " + quote(name) + ": there is box, triangle, gaussian");
 }
 
 const char* name_of(PixelFilter filter) {
@@ -66,12 +67,12 @@ const char* name_of(PixelFilter filter) {
 const Quality& parse_quality(const std::string& name) {
   if (name.empty()) return default_quality;
   if (const Quality* quality = find_quality(name)) return *quality;
-  throw Error(ErrorKind::usage, "--quality " + name + ": there is draft, production, exact");
+  throw Error(ErrorKind::usage, "--quality " + quote(name) + ": there is draft, production, exact");
 }
 
 SampleCount parse_samples(const std::string& text) {
   if (const auto samples = parse_sample_count(text)) return *samples;
-  throw Error(ErrorKind::usage, "--spp " + text + ": must be a whole number or adaptive:ERROR[:MOST]");
+  throw Error(ErrorKind::usage, "--spp " + quote(text) + ": must be a whole number or adaptive:ERROR[:MOST]");
 }
 
 LayerSet parse_layers(const std::string& list) {
@@ -91,7 +92,8 @@ LayerSet parse_layers(const std::string& list) {
     take("UV", layers.uv);
     take("id", layers.id);
     take("tests", layers.tests);
-    if (!known) throw Error(ErrorKind::usage, "--aov " + part + ": there is Z, N, P, albedo, UV, id, tests, all");
+    if (!known)
+      throw Error(ErrorKind::usage, "--aov " + quote(part) + ": there is Z, N, P, albedo, UV, id, tests, all");
   }
   return layers;
 }

@@ -21,6 +21,7 @@
 #include <span>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 #include "output/atomic_file.hpp"
 
 namespace sheaf {
@@ -188,7 +189,7 @@ Compression parse_compression(const std::string& name) {
     if (name == entry.name) return entry.compression;
     allowed += std::string(allowed.empty() ? "" : ", ") + entry.name;
   }
-  throw Error(ErrorKind::usage, "--compression \"" + name + "\": not one of " + allowed);
+  throw Error(ErrorKind::usage, "--compression " + in_quotes(name) + ": not one of " + allowed);
 }
 
 const char* name_of(Compression compression) { return entry_of(compression).name; }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 
 namespace sheaf {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::size_t max_pattern_bytes = 200;
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 Error usage(const std::string& pattern, const std::string& reason) {
-  return {ErrorKind::usage, "--name \"" + pattern + "\": " + reason};
+  return {ErrorKind::usage, "--name " + in_quotes(pattern) + ": " + reason};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 
 namespace sheaf {
 namespace {
@@ -17,7 +18,7 @@ struct Range {
 };
 
 Error usage(std::string_view item, const std::string& reason) {
-  return {ErrorKind::usage, "--frames \"" + std::string(item) + "\": " + reason};
+  return {ErrorKind::usage, "--frames " + in_quotes(item) + ": " + reason};
 }
 
 // Takes one number off the front of `rest`.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 
 namespace sheaf {
 namespace {
@@ -41,7 +42,7 @@ ProgressMode parse_progress(const std::string& name) {
   if (name == "bar") return ProgressMode::bar;
   if (name == "json") return ProgressMode::json;
   if (name == "none") return ProgressMode::none;
-  throw Error(ErrorKind::usage, "--progress \"" + name + "\": not one of auto, bar, json, none");
+  throw Error(ErrorKind::usage, "--progress " + in_quotes(name) + ": not one of auto, bar, json, none");
 }
 
 Progress::Progress(ProgressMode mode, std::FILE* json, std::FILE* text)

@@ -27,7 +27,7 @@ void JsonObject::only(std::initializer_list<const char*> known) const {
   for (const auto& [key, value] : value_.items()) {
     const std::string& name = key;
     if (std::ranges::none_of(known, [&](const char* k) { return name == k; })) {
-      fail("", "unknown key \"" + name.substr(0, 60) + "\"");
+      fail("", "unknown key " + in_quotes(name));
     }
   }
 }

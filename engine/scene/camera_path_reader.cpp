@@ -103,7 +103,7 @@ std::string choice(const JsonObject& object, const char* key, std::initializer_l
     if (value == name) return value;
     names += (names.empty() ? "" : ", ") + std::string(name);
   }
-  object.fail(key, "\"" + value.substr(0, 40) + "\" is not one of " + names);
+  object.fail(key, in_quotes(value) + " is not one of " + names);
 }
 
 CameraPath read_path(const JsonObject& object, const nlohmann::json& document) {

@@ -35,8 +35,7 @@ struct ChannelReader {
     } else if (path == "weights") {
       return weights(channel);
     } else {
-      file.fail(place + ".target.path",
-                "\"" + path.substr(0, 40) + "\" is not translation, rotation, scale or weights");
+      file.fail(place + ".target.path", in_quotes(path) + " is not translation, rotation, scale or weights");
     }
     return true;
   }
@@ -64,7 +63,7 @@ struct ChannelReader {
     } else if (mode == "CUBICSPLINE") {
       channel.interpolation = Interpolation::cubic_spline;
     } else if (mode != "LINEAR") {
-      file.fail(place, "interpolation \"" + mode.substr(0, 40) + "\" is not STEP, LINEAR or CUBICSPLINE");
+      file.fail(place, "interpolation " + in_quotes(mode) + " is not STEP, LINEAR or CUBICSPLINE");
     }
     const auto times = accessors.floats(sampler.at("input").get<int>(), 1, Components::floats, "animation input");
     channel.times.assign(times.begin(), times.end());

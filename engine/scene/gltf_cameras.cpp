@@ -61,7 +61,7 @@ Light read_light(GltfFile& file, const json& object, const std::string& place) {
     light.kind = LightKind::spot;
     read_spot(file, object, place, light);
   } else if (type != "point") {
-    file.fail(place + ".type", "\"" + type.substr(0, 40) + "\" is not directional, point or spot");
+    file.fail(place + ".type", in_quotes(type) + " is not directional, point or spot");
   }
   if (const json* color = member(object, "color")) {
     for (int c = 0; c < 3; ++c) light.color[c] = (*color)[static_cast<std::size_t>(c)].get<float>();

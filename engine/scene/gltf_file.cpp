@@ -33,7 +33,7 @@ void check_extensions(GltfFile& file) {
   if (const nlohmann::json* required = member(file.json, "extensionsRequired")) {
     for (const auto& name : *required) {
       if (!is_supported(name.get<std::string>())) {
-        file.fail("extensionsRequired", "\"" + name.get<std::string>() + "\" is not supported");
+        file.fail("extensionsRequired", in_quotes(name.get<std::string>()) + " is not supported");
       }
     }
   }
@@ -42,7 +42,7 @@ void check_extensions(GltfFile& file) {
       const auto name = entry.get<std::string>();
       if (is_supported(name) || std::ranges::count(file.extensions_ignored, name) > 0) continue;
       file.extensions_ignored.push_back(name);
-      file.warn("extensionsUsed", "\"" + name + "\" is not supported and is ignored");
+      file.warn("extensionsUsed", in_quotes(name) + " is not supported and is ignored");
     }
   }
 }

@@ -72,7 +72,7 @@ class MaterialReader {
     } else if (source.alphaMode == "BLEND") {
       out.alpha_mode = AlphaMode::blend;
     } else if (source.alphaMode != "OPAQUE") {
-      file_.fail(place_ + ".alphaMode", "\"" + source.alphaMode.substr(0, 40) + "\" is not OPAQUE, MASK or BLEND");
+      file_.fail(place_ + ".alphaMode", in_quotes(source.alphaMode) + " is not OPAQUE, MASK or BLEND");
     }
     out.alpha_cutoff = clamped(file_, place_ + ".alphaCutoff", source.alphaCutoff, 0, any_);
     out.double_sided = source.doubleSided;

@@ -71,7 +71,7 @@ std::uint32_t chosen_scene(const GltfFile& file, const std::string& selector) {
   const bool digits =
       selector.size() <= 9 && std::ranges::all_of(selector, [](char c) { return c >= '0' && c <= '9'; });
   if (digits && std::stoul(selector) < scenes.size()) return static_cast<std::uint32_t>(std::stoul(selector));
-  file.fail("scenes", "there is no scene \"" + selector + "\" among " + std::to_string(scenes.size()));
+  file.fail("scenes", "there is no scene " + in_quotes(selector) + " among " + std::to_string(scenes.size()));
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ class Checker {
         return check_index(value, place, rule.of);
       case JsonKind::index_map:
         want(value.is_object(), "an object");
-        for (const auto& [name, index] : value.items()) check_index(index, place + "." + name, rule.of);
+        for (const auto& [name, index] : value.items()) check_index(index, place + "." + quote(name), rule.of);
         return;
       default:
         break;
@@ -129,15 +129,14 @@ class Checker {
   }
 
   void check_integer(const json& value, const std::string& place, const SchemaRule& rule) const {
-    if (!value.is_number_integer())
-      fail(place, std::string("must be a whole number, not ") + value.dump().substr(0, 40));
+    if (!value.is_number_integer()) fail(place, std::string("must be a whole number, not ") + quote(value.dump(), 40));
     const double number = value.get<double>();
     if (number < rule.lo || number > rule.hi) fail(place, value.dump() + " is out of range");
   }
 
   void check_index(const json& value, const std::string& place, const std::string& of) const {
     const std::size_t count = of == "lights" ? light_count() : document_.contains(of) ? document_.at(of).size() : 0;
-    if (!value.is_number_integer()) fail(place, "must be an index, not " + value.dump().substr(0, 40));
+    if (!value.is_number_integer()) fail(place, "must be an index, not " + quote(value.dump(), 40));
     if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= count) {
       fail(place, value.dump() + " is out of range, the file has " + std::to_string(count) + " " + of);
     }
@@ -181,9 +180,9 @@ void check_gltf_document(const json& document, const std::string& file) {
   for (const SchemaGroup& group : schema_rules()) checker.check(group);
   const std::string version = document.at("asset").at("version").get<std::string>();
   const std::string minimum = document.at("asset").value("minVersion", version);
-  if (!version.starts_with("2.")) checker.fail("asset.version", "\"" + version + "\" is not supported, only 2.x is");
+  if (!version.starts_with("2.")) checker.fail("asset.version", in_quotes(version) + " is not supported, only 2.x is");
   if (minimum != version && minimum != "2.0") {
-    checker.fail("asset.minVersion", "\"" + minimum + "\" is not supported, only 2.0 is");
+    checker.fail("asset.minVersion", in_quotes(minimum) + " is not supported, only 2.0 is");
   }
   checker.check_channel_samplers();
   checker.check_camera_types();

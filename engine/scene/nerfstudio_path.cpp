@@ -4,6 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <numbers>
 
+#include "core/quote.hpp"
 #include "scene/camera_path_json.hpp"
 
 namespace sheaf {
@@ -38,7 +39,7 @@ CameraPath read_nerfstudio_path(const JsonObject& object, const nlohmann::json& 
   if (object.has("camera_type")) {
     const std::string type = object.text("camera_type");
     if (type != "perspective" && type != "pinhole") {
-      object.fail("camera_type", "\"" + type.substr(0, 40) + "\" is not supported, only perspective is");
+      object.fail("camera_type", in_quotes(type) + " is not supported, only perspective is");
     }
   }
   CameraPath path;

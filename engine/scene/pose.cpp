@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/error.hpp"
+#include "core/quote.hpp"
 #include "scene/rigid.hpp"
 
 namespace sheaf {
@@ -121,9 +122,10 @@ std::vector<std::uint32_t> select_animations(const Scene& scene, const std::stri
   const bool digits =
       selector.size() <= 9 && std::ranges::all_of(selector, [](char c) { return c >= '0' && c <= '9'; });
   if (digits && std::stoul(selector) < count) return {static_cast<std::uint32_t>(std::stoul(selector))};
-  std::string names;
-  for (const Animation& animation : scene.animations) names += (names.empty() ? "\"" : ", \"") + animation.name + "\"";
-  throw input_error(scene.path, "there is no animation \"" + selector + "\", it has " + (count == 0 ? "none" : names));
+  std::vector<std::string> names;
+  for (const Animation& animation : scene.animations) names.push_back(animation.name);
+  throw input_error(scene.path, "there is no animation " + in_quotes(selector) + ", it has " +
+                                    (count == 0 ? "none" : quoted_list(names)));
 }
 
 Pose evaluate_pose(const Scene& scene, const std::vector<std::uint32_t>& animations, double time_s) {
