@@ -25,6 +25,7 @@
 #define SPEC_WORKERS 18
 #define SPEC_BY_PARENT 19
 #define SPEC_BUNDLE 20
+#define SPEC_GLASS_ALPHA 21
 
 // Roles of storage buffers. A role has the same binding number in every shader; a kernel declares the roles it reads.
 #define ROLE_FRAME 0

@@ -10,6 +10,7 @@
 #include "scene.glsl"
 #include "surface.glsl"
 #include "fresnel.glsl"
+#include "lobes.glsl"
 #include "media.glsl"
 #include "accumulate.glsl"
 #include "lists.glsl"
@@ -19,6 +20,8 @@ layout(constant_id = SPEC_SHADOWS) const bool SHADOWS = true;
 layout(constant_id = SPEC_REFLECTIONS) const bool REFLECTIONS = true;
 layout(constant_id = SPEC_REFRACTIONS) const bool REFRACTIONS = true;
 layout(constant_id = SPEC_VOLUMES) const bool VOLUMES = true;
+layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;    // some surface has T > 0
+layout(constant_id = SPEC_GLASS_ALPHA) const bool GLASS_ALPHA = false;  // what is seen through such surfaces is not covered
 
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
@@ -45,6 +48,7 @@ Light light_together(uint index) {
   return Light(place.xyz, floatBitsToUint(place.w), way.xyz, way.w, shine.xyz, shine.w, floats(p[6]).x, 0u);
 }
 
+float mean_of(vec3 v) { return (v.r + v.g + v.b) / 3.0; }
 float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
 
 bool worth_a_ray(float weight) { return push.last == 0u && weight > 0.0 && weight >= frame.cutoff; }
@@ -75,21 +79,6 @@ vec3 light_arriving(Light light, vec3 point, out vec3 towards, out float distanc
   return min(l * (fade / max(distance * distance, 1e-30)), vec3(1e9));
 }
 
-vec3 reflectance(Surface s, vec3 f0, vec3 v, vec3 l) {  // f · (n·l)
-  float nl = dot(s.normal, l);
-  float nv = clamp(dot(s.normal, v), 1e-4, 1.0);
-  vec3 h = safe_normalize(v + l, s.normal);
-  float nh = clamp(dot(s.normal, h), 0.0, 1.0);
-  vec3 f = schlick(f0, clamp(dot(v, h), 0.0, 1.0));
-  float rough = max(s.roughness, 0.1);
-  float a2 = rough * rough * rough * rough;
-  float q = nh * nh * (a2 - 1.0) + 1.0;
-  float d = a2 / (3.14159265 * q * q);
-  float visibility = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
-  vec3 diffuse = (1.0 - f) * ((1.0 - s.metallic) * (1.0 - s.transmission) / 3.14159265) * s.base.rgb;
-  return (diffuse + f * (d * visibility)) * nl;
-}
-
 void no_ray_shadow(uint slot) { store_no_ray(push.shadow_rays, slot); }
 void no_ray_reflection(uint slot) {
   if (REFLECTIONS) store_no_ray(push.reflection_rays, slot);
@@ -98,17 +87,20 @@ void no_ray_refraction(uint slot) {
   if (REFRACTIONS) store_no_ray(push.refraction_rays, slot);
 }
 
-void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight, vec3 f0, vec3 v, uint pixel) {
+void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight, Lobes lobes, vec3 v, uint pixel) {
   vec3 l;
   float distance;
   vec3 arriving = light_arriving(light, s.point, l, distance);
   vec3 carried = vec3(0);
-  if (dot(s.normal, l) > 0.0 && dot(s.geometric, l) > 0.0) carried = weight * reflectance(s, f0, v, l) * arriving;
+  bool faces = dot(s.geometric, l) > 0.0;
+  bool lifted = !faces && s.lift > 0.0 && dot(s.vertex_normal, l) > 0.0;
+  if (dot(s.normal, l) > 0.0 && (faces || lifted)) carried = weight * reflectance(s, lobes, v, l) * arriving;
   if (!(largest(carried) > 0.0)) {
     no_ray_shadow(slot);
     return;
   }
-  vec3 target = offset_origin(s, l, light.kind == LIGHT_DIRECTIONAL ? 0.0 : distance);
+  if (lifted) s.point += s.lift * s.vertex_normal;
+  vec3 target = offset_origin(s, lifted ? s.geometric : l, light.kind == LIGHT_DIRECTIONAL ? 0.0 : distance);
   vec3 origin = light.position, direction = target - light.position;
   float tmin = 0.25 * frame.box_pad, tmax = length(direction);  // SHADING.md, Lights: a lamp's own surface does not hide it
   if (light.kind == LIGHT_DIRECTIONAL) {
@@ -142,14 +134,15 @@ void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
   if (TEXTURED) store_ray_cone(push.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
 }
 
-void make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel, vec2 cone) {
+bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel, vec2 cone) {
   if (!worth_a_ray(max(largest(weight), coverage))) {
     no_ray_refraction(slot);
-    return;
+    return false;
   }
   vec3 o = offset_origin(s, -s.geometric, 0.0);
   store_ray(push.refraction_rays, slot, Ray(o, direction, 0.0, INFINITY), pixel, RayLoad(weight, coverage, medium));
   if (TEXTURED) store_ray_cone(push.refraction_rays, slot, cone);
+  return true;
 }
 
 float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : load_material(volume_material(stack & 0xFFu)).ior; }
@@ -162,41 +155,44 @@ bool bend(vec3 d, vec3 n, float eta, out vec3 t) {
   return k > 0.0;
 }
 
-// Steps 7 to 9 for a surface that lets light through.
-void make_transmitted_rays(uint slot, Surface s, Material m, float t, vec3 weight, Parent p, float mirror, float nv) {
-  bool volume = VOLUMES && m.volume != 0u;
-  float n1 = 1.0, n2 = m.ior;
-  uint medium = p.medium;
-  if (volume && s.front) {
-    n1 = ior_of(p.medium);
-    medium = media_push(p.medium, m.volume);
-  } else if (volume) {
-    medium = media_remove(p.medium, m.volume);
-    n1 = m.ior;
-    n2 = ior_of(medium);
+// Step 7: the lobes of a surface that lets light through.
+void see_through(Surface s, Material m, Parent p, float nv, inout Lobes lobes, out Interface face) {
+  face.n1 = 1.0;
+  face.n2 = m.ior;
+  face.medium = p.medium;
+  if (VOLUMES && m.volume != 0u) {
+    face.medium = s.front ? media_push(p.medium, m.volume) : media_remove(p.medium, m.volume);
+    face.n1 = s.front ? ior_of(p.medium) : m.ior;
+    if (!s.front) face.n2 = ior_of(face.medium);
   }
-  vec3 n = s.normal;
-  float cos1 = -dot(p.ray.direction, n);
-  if (!(cos1 > 0.0)) {
-    n = s.geometric;
-    cos1 = clamp(-dot(p.ray.direction, n), 0.0, 1.0);
+  face.normal = s.normal;
+  face.cosine = -dot(p.ray.direction, s.normal);
+  if (!(face.cosine > 0.0)) {
+    face.normal = s.geometric;
+    face.cosine = clamp(-dot(p.ray.direction, s.geometric), 0.0, 1.0);
   }
-  float f = fresnel(min(cos1, 1.0), n1, n2);
-  vec3 fs = mix(vec3(f), schlick(s.base.rgb, nv), s.metallic);
-  make_reflection_ray(slot, s, t, weight * mix(mirror, 1.0, s.transmission) * fs, p);
-  if (!REFRACTIONS) return;
-  vec3 through = weight * (s.transmission * (1.0 - s.metallic) * (1.0 - f)) * s.base.rgb;
+  lobes.dielectric = fresnel(min(face.cosine, 1.0), face.n1, face.n2);
+  lobes.mirrored = mix(vec3(lobes.dielectric), schlick(s.base.rgb, nv), s.metallic);
+  lobes.share = mix(lobes.share, 1.0, s.transmission);
+}
+
+// Step 9. Gives what the ray takes along of the parent's coverage `cover`.
+float make_transmitted_ray(uint slot, Surface s, Material m, float t, vec3 weight, float cover, Parent p, Lobes lobes, Interface face) {
+  vec3 share = (s.transmission * (1.0 - s.metallic) * (1.0 - lobes.dielectric)) * s.base.rgb;
   vec3 way = p.ray.direction;
-  bool passes = f < 1.0;
+  bool passes = lobes.dielectric < 1.0;
   vec2 cone = cone_after(p, s, t, 1.0, 0.0);
-  if (volume && passes) {
-    float eta = n1 / n2;
-    passes = bend(p.ray.direction, n, eta, way);
+  if (VOLUMES && m.volume != 0u && passes) {
+    float eta = face.n1 / face.n2;
+    passes = bend(p.ray.direction, face.normal, eta, way);
     if (passes && dot(way, s.geometric) >= 0.0) passes = bend(p.ray.direction, s.geometric, eta, way);
     way = safe_normalize(way, p.ray.direction);
-    cone = cone_after(p, s, t, eta, eta * cos1 + dot(way, n));
+    cone = cone_after(p, s, t, eta, eta * face.cosine + dot(way, face.normal));
   }
-  make_refraction_ray(slot, s, way, passes ? through : vec3(-1), medium, passes ? 0.0 : -1.0, p.pixel, cone);
+  float coverage = GLASS_ALPHA ? cover * min(mean_of(share), 1.0) : 0.0;
+  bool made = make_refraction_ray(slot, s, way, passes ? weight * share : vec3(-1), face.medium, passes ? coverage : -1.0, p.pixel,
+                                  cone);
+  return made ? coverage : 0.0;
 }
 
 vec3 absorbed(Parent p, Surface s, Material m, float t) {
@@ -217,23 +213,20 @@ void add_own(uint pixel, vec3 light, float coverage) {
     accumulate(pixel, fixed_point(vec4(light, coverage)), 4u);
 }
 
-// The rays that go on from a surface, light's aside.
-void make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight, float alpha, Parent p, float mirror, vec3 f0) {
-  bool unlit = (m.flags & MATERIAL_UNLIT) != 0u;
-  float nv = clamp(dot(s.normal, -p.ray.direction), 1e-4, 1.0);
-  if (REFRACTIONS && s.transmission > 0.0 && !unlit) {
-    make_transmitted_rays(slot, s, m, t, weight, p, mirror, nv);
-    return;
-  }
+// The rays that go on from a surface, light's aside. Gives what one through glass takes along of the parent's coverage.
+float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight, float alpha, Parent p, Lobes lobes, Interface face) {
+  if (REFLECTIONS && (m.flags & MATERIAL_UNLIT) == 0u)
+    make_reflection_ray(slot, s, t, weight * (lobes.share * lobes.mirrored), p);
+  else
+    no_ray_reflection(slot);
+  if (REFRACTIONS && TRANSLUCENT && s.transmission > 0.0)
+    return make_transmitted_ray(slot, s, m, t, weight, p.coverage, p, lobes, face);
   if (REFRACTIONS && alpha < 1.0)
     make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel,
                         cone_after(p, s, t, 1.0, 0.0));
   else
     no_ray_refraction(slot);
-  if (REFLECTIONS && !unlit)
-    make_reflection_ray(slot, s, t, weight * (mirror * schlick(f0, nv)), p);
-  else
-    no_ray_reflection(slot);
+  return 0.0;
 }
 
 // `there`: a lane without a hit only helps to read.
@@ -242,20 +235,28 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool t
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
   Material m;
   Surface s = surface_at(triangle, at.barycentric, p.ray.direction, p.cone_width + p.cone_spread * t, m);
-  if (VOLUMES) p.weight *= absorbed(p, s, m, t);
+  float covers = 0.0;  // what is absorbed hides what is behind
+  if (VOLUMES) {
+    vec3 left = absorbed(p, s, m, t);
+    p.weight *= left;
+    if (GLASS_ALPHA) {
+      covers = p.coverage * (1.0 - mean_of(left));
+      p.coverage *= mean_of(left);
+    }
+  }
   float alpha = (m.flags & MATERIAL_BLEND) != 0u ? clamp(s.base.a, 0.0, 1.0) : 1.0;
   if (alpha < 1.0) s.transmission = 0.0;  // one straight ray goes on; see SHADING.md, 1
   vec3 weight = p.weight * alpha;
   bool unlit = (m.flags & MATERIAL_UNLIT) != 0u;
   vec3 v = -p.ray.direction;
   float nv = clamp(dot(s.normal, v), 1e-4, 1.0);
-  float r0 = (m.ior - 1.0) / (m.ior + 1.0);
-  vec3 f0 = mix(vec3(r0 * r0), s.base.rgb, s.metallic);
-  float q = max(1.0 - s.roughness / 0.4, 0.0);
-  float mirror = q * q;
-  vec3 ambient = ((1.0 - s.metallic) * (1.0 - s.transmission)) * s.base.rgb + (1.0 - mirror) * schlick(f0, nv);
-  vec3 own = unlit ? s.base.rgb : s.emission + frame.environment * ambient * s.occlusion;
-  if (there) add_own(p.pixel, weight * own, p.coverage * alpha);
+  Lobes lobes = lobes_of(s, m.ior, nv);
+  Interface face;
+  if (TRANSLUCENT && s.transmission > 0.0) see_through(s, m, p, nv, lobes, face);
+  vec3 own = unlit ? s.base.rgb : s.emission + frame.environment * ambient_of(s, lobes) * s.occlusion;
+  covers += p.coverage * alpha;
+  if (there && GLASS_ALPHA) covers -= make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
+  if (there) add_own(p.pixel, weight * own, covers);
   if (SHADOWS)
     for (uint i = 0u; i < frame.lights; ++i) {
       Light light = light_together(i);
@@ -264,9 +265,9 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool t
       if (unlit)
         no_ray_shadow(shadow_slot);
       else
-        make_shadow_ray(shadow_slot, light, i, s, weight, f0, v, p.pixel);
+        make_shadow_ray(shadow_slot, light, i, s, weight, lobes, v, p.pixel);
     }
-  if (there) make_secondary_rays(slot, s, m, t, weight, alpha, p, mirror, f0);
+  if (there && !GLASS_ALPHA) make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
 }
 
 void main() {

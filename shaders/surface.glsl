@@ -12,6 +12,8 @@ struct Surface {
   float reach;        // largest coordinate distance from the point to a corner of its triangle
   vec3 geometric;     // faces the ray
   vec3 normal;        // faces the ray
+  vec3 vertex_normal; // the same without a normal map
+  float lift;         // along it, onto a level with the triangle's highest corner; 0 where the triangle is flat
   bool front;
   vec4 base;
   float metallic;
@@ -29,13 +31,14 @@ vec3 transform_normal(Instance i, vec3 v) { return vec3(dot(i.normal0, v), dot(i
 
 const float MAX_SPREAD = 1e3;  // of a ray's cone: past it nothing has detail left
 
-vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped) {
+vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped, out vec3 vertex_normal) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
   vec3 n = is_dynamic ? load_dynamic(d.x + 1u) * b.x + load_dynamic(d.y + 1u) * b.y + load_dynamic(d.z + 1u) * b.z
                       : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
   n = safe_normalize(n, geometric);
+  vertex_normal = n;
   if (!TEXTURED_NORMALS || instance.tangent == NO_INDEX) return n;
   if ((use.flags & TEXTURE_HERE) == 0u) return n;
   uvec3 w = v + instance.tangent;
@@ -122,6 +125,13 @@ Texels look_up_filtered(SharedLooks looks, TexturePoint p) {
   return texels;
 }
 
+// How far the triangle's highest corner is above the point, as the vertex normals see it: no ray from there on goes back through the
+// triangle if it goes up (SHADING.md, Shadow rays). Less than 10^-5 of the triangle's size is rounding: it is flat.
+float lift_of(Surface s, vec3 v0, vec3 v1, vec3 v2) {
+  float lift = max_of(vec3(dot(v0 - s.point, s.vertex_normal), dot(v1 - s.point, s.vertex_normal), dot(v2 - s.point, s.vertex_normal)));
+  return lift > 1e-5 * s.reach && dot(s.vertex_normal, s.geometric) > 0.0 ? lift : 0.0;
+}
+
 // All lanes are active (looks_together.glsl).
 Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Material material) {
   Corners corners = load_triangle(triangle);
@@ -149,11 +159,13 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
     if (width != 0.0) s.curvature = curvature_of(instance, v, b, slopes, along, across);
   }
   Texels texels = look_up_filtered(looks, point_uv);
-  vec3 n = shading_normal(instance, v, b, g, texels.normal, texels.of[TEXTURE_NORMAL].xyz);
+  vec3 n = shading_normal(instance, v, b, g, texels.normal, texels.of[TEXTURE_NORMAL].xyz, s.vertex_normal);
   s.front = dot(g, direction) < 0.0;
   if (!s.front) s.curvature = -s.curvature;
   s.geometric = s.front ? g : -g;
   s.normal = s.front ? n : -n;
+  s.vertex_normal = s.front ? s.vertex_normal : -s.vertex_normal;
+  s.lift = lift_of(s, v0, v1, v2);
   s.base = base_color_at(instance, material, v, b, texels.of[TEXTURE_BASE_COLOR]);
   vec4 mr = texels.of[TEXTURE_METALLIC_ROUGHNESS];
   s.metallic = clamp(material.metallic * mr.b, 0.0, 1.0);

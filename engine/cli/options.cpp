@@ -135,6 +135,10 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       ->capture_default_str();
   command.add_option("--progress", o.progress, "auto, bar, json or none")->capture_default_str();
   command.add_flag("--resume", o.resume, "leave frames that are already whole alone");
+  command
+      .add_option("--glass-alpha", o.glass_alpha,
+                  "opaque, or transparent: the background shows through transmission, alpha is what glass holds back")
+      ->capture_default_str();
   command.add_flag("--opaque", o.settings.opaque, "every surface opaque and two-sided");
   command.add_flag("--preview", o.preview, "a tone-mapped PNG beside each frame");
 }
@@ -158,6 +162,7 @@ void resolve_options(RenderOptions& o) {
       {{"auto", InstancePolicy::automatic}, {"copied", InstancePolicy::copied}, {"shared", InstancePolicy::shared}});
   s.layers = parse_layers(o.layers);
   s.z_background = parse_z_background(o.z_background);
+  s.transparent_glass = one_of<bool>("glass-alpha", o.glass_alpha, {{"opaque", false}, {"transparent", true}});
   const int count = one_of<int>("count", o.count, {{"auto", -1}, {"on", 1}, {"off", 0}});
   s.counted = count == 1 || (count == -1 && (!o.stats.empty() || s.layers.tests));
   if (!o.environment.empty()) s.environment = parse_color("environment", o.environment);

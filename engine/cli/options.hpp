@@ -28,7 +28,7 @@ struct RenderOptions {
   std::string quality;
   std::optional<std::string> spp;
   std::string strategy = "auto", sort = "auto", primary = "auto", instances = "auto", layers, compression = "zip", name,
-              environment, z_background = "1e10";
+              environment, z_background = "1e10", glass_alpha = "opaque";
   std::string stats, dump, device, progress = "auto", count = "auto";
   std::optional<std::uint32_t> depth;
   std::optional<float> cutoff;

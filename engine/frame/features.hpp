@@ -21,6 +21,7 @@ struct Features {
   bool default_light = false;            // the scene has none of its own
   bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
   bool textured = false, normal_mapped = false, unlit = false, emissive = false;
+  std::vector<std::string> rough_glass;  // materials whose transmission ought to blur what is behind
   bool skinned = false, morphed = false, moving_nodes = false, moving_camera = false, moving_lights = false;
   [[nodiscard]] bool translucent() const { return transmissive || blended; }
   [[nodiscard]] bool geometry_moves() const { return moving_nodes || skinned || morphed; }

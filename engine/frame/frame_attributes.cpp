@@ -40,6 +40,7 @@ nlohmann::ordered_json settings_json(const RenderSettings& s) {
     else
       json["z_background"] = s.z_background;
   }
+  if (s.transparent_glass) json["glass-alpha"] = "transparent";
   if (s.samples.error) json["spp"] = text_of(s.samples);
   if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};
   return json;

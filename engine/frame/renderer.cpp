@@ -25,7 +25,7 @@ Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, con
       memory_(make_ray_memory(device, settings, plan_, features, scene_->lights())),
       animate_(device, plan_, !scene_->layout().deforms.empty()),
       objects_(device, plan_),
-      generate_(device, plan_, features_, settings.counted),
+      generate_(device, plan_, features_, settings),
       compact_(device),
       shade_(device, plan_, features_, scene_->lights(), settings.counted),
       resolve_(device),

@@ -39,6 +39,7 @@ struct RenderSettings {
   PrimaryMethod primary = PrimaryMethod::automatic;
   InstancePolicy instances = InstancePolicy::automatic;
   bool opaque = false;
+  bool transparent_glass = false;  // what is seen through transmission is not covered: alpha below 1
   LayerSet layers;
   float z_background = 1e10F;       // of layer Z where nothing was hit
   std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame

@@ -63,17 +63,36 @@ Arriving arriving(const WorldLight& light, const glm::dvec3& point) {
   return {glm::min(radiance, glm::dvec3(most)), towards, distance};
 }
 
-glm::dvec3 reflectance(const Surface& s, const glm::dvec3& f0, const glm::dvec3& v, const glm::dvec3& towards) {
+Lobes lobes_of(const Surface& s, double nv) {
+  Lobes lobes;
+  lobes.r0 = std::pow((s.ior - 1) / (s.ior + 1), 2);
+  lobes.f0 = glm::mix(glm::dvec3(lobes.r0), s.base, s.metallic);
+  lobes.mirrored = schlick(lobes.f0, nv);
+  lobes.dielectric = schlick(glm::dvec3(lobes.r0), nv).x;
+  lobes.share = std::pow(std::max(1 - s.roughness / 0.4, 0.0), 2);
+  lobes.rise = std::pow(1 - 0.6 * (std::pow(std::max(s.roughness, 0.1), 2) - 0.01), 3);
+  return lobes;
+}
+
+glm::dvec3 ambient(const Surface& s, const Lobes& lobes) {
+  return s.base * ((1 - s.metallic) * (1 - s.transmission) * (1 - lobes.dielectric)) +
+         (1 - lobes.share) * lobes.mirrored;
+}
+
+glm::dvec3 reflectance(const Surface& s, const Lobes& lobes, const glm::dvec3& v, const glm::dvec3& towards) {
   const double nl = glm::dot(s.normal, towards), nv = std::clamp(glm::dot(s.normal, v), 1e-4, 1.0);
   const glm::dvec3 sum = v + towards;
   const double length = glm::length(sum);
   const glm::dvec3 h = length > 0 ? sum / length : s.normal;
   const double nh = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
-  const glm::dvec3 f = schlick(f0, std::clamp(glm::dot(v, h), 0.0, 1.0));
+  const glm::dvec3 f = schlick(lobes.f0, std::clamp(glm::dot(v, h), 0.0, 1.0));
   const double alpha = std::pow(std::max(s.roughness, 0.1), 2), a2 = alpha * alpha;
   const double distribution = a2 / (std::numbers::pi * std::pow(nh * nh * (a2 - 1) + 1, 2));
   const double visibility = 0.5 / (nl * std::sqrt(nv * nv * (1 - a2) + a2) + nv * std::sqrt(nl * nl * (1 - a2) + a2));
-  const glm::dvec3 diffuse = (1.0 - f) * s.base * ((1 - s.metallic) * (1 - s.transmission) / std::numbers::pi);
+  const auto kept = [&](double x) { return 1 - lobes.rise * std::pow(std::clamp(1 - x, 0.0, 1.0), 5); };
+  const double most = (1 - lobes.r0) * kept(nv) * kept(nl) / (1 - lobes.rise / 21);
+  const glm::dvec3 left = glm::min(1.0 - f, glm::dvec3(most));
+  const glm::dvec3 diffuse = left * s.base * ((1 - s.metallic) * (1 - s.transmission) / std::numbers::pi);
   return (diffuse + f * (distribution * visibility)) * nl;
 }
 

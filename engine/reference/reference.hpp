@@ -29,6 +29,7 @@ struct ReferenceSettings {
   std::uint32_t depth = 4;                // generations of rays after the camera's
   double cutoff = 0.002;                  // weights below make no further rays
   bool opaque = false;                    // every surface opaque: no alpha, no transmission
+  bool transparent_glass = false;         // what is seen through transmission is not covered
   std::optional<glm::dvec3> environment;  // else 0.4 where the scene has no light, 0 where it has
   std::uint32_t threads = 0;              // 0: as many as the machine has; the picture does not depend on it
   std::function<bool()> stop;             // asked between rows, by any thread: true ends it with Error{interrupted}

@@ -22,6 +22,18 @@ Result interpolate(const std::vector<Value>& values, const glm::uvec3& v, const 
   return Result(values[v.x]) * b.x + Result(values[v.y]) * b.y + Result(values[v.z]) * b.z;
 }
 
+/// How far the triangle's highest corner is above the point, as the vertex normals see it; less than 1e-5 of its size
+/// is flat.
+double lift(const ReferenceTriangle& triangle, const Surface& s) {
+  double most = 0, size = 0;
+  for (const glm::dvec3& v : triangle.v) {
+    const glm::dvec3 way = v - s.point;
+    most = std::max(most, glm::dot(way, s.vertex_normal));
+    size = std::max({size, std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+  }
+  return most > 1e-5 * size && glm::dot(s.vertex_normal, s.geometric) > 0 ? most : 0;
+}
+
 }  // namespace
 
 struct Surfaces::Point {
@@ -88,8 +100,11 @@ glm::dvec3 Surfaces::front_normal(const Hit& hit, const glm::dvec3& otherwise) c
   return unit(glm::cross(t.v[1] - t.v[0], t.v[2] - t.v[0]), otherwise) * world_.instances[t.instance].side;
 }
 
-glm::dvec3 Surfaces::shading_normal(const Point& p, const glm::dvec3& geometric) const {
-  const glm::dvec3 n = unit(interpolate(p.instance.normals, p.v, p.b, glm::dvec3(0)), geometric);
+glm::dvec3 Surfaces::vertex_normal(const Point& p, const glm::dvec3& geometric) const {
+  return unit(interpolate(p.instance.normals, p.v, p.b, glm::dvec3(0)), geometric);
+}
+
+glm::dvec3 Surfaces::mapped_normal(const Point& p, const glm::dvec3& n) const {
   if (!p.material.normal_texture.present() || p.instance.tangents.empty()) return n;
   const glm::dvec3 t = unit(interpolate(p.instance.tangents, p.v, p.b, glm::dvec3(0)), glm::dvec3(0));
   const double handedness = p.mesh.tangents[p.v.x].w < 0 ? -1 : 1;  // the same at all three vertices
@@ -147,11 +162,13 @@ Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction, double width) 
   s.offset = 1e-12 * std::max({size.x, size.y, size.z});
   const glm::dvec3 g = front_normal(hit, -direction);
   const double curvature = spread_over(p, g, direction, std::abs(width));
-  const glm::dvec3 n = shading_normal(p, g);
+  const glm::dvec3 unmapped = vertex_normal(p, g), n = mapped_normal(p, unmapped);
   s.front = glm::dot(g, direction) < 0;
   s.geometric = s.front ? g : -g;
   s.curvature = s.front ? curvature : -curvature;
   s.normal = s.front ? n : -n;
+  s.vertex_normal = s.front ? unmapped : -unmapped;
+  s.lift = lift(p.triangle, s);
   const glm::dvec4 base = base_color(p);
   s.base = base;
   s.alpha = coverage(p, base.a);

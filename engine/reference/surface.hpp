@@ -12,6 +12,8 @@ struct Surface {
   glm::dvec3 point;              // relative to the frame origin
   double offset;                 // how far off the surface a new ray starts
   glm::dvec3 geometric, normal;  // facing the ray
+  glm::dvec3 vertex_normal;      // the same without a normal map
+  double lift;  // along it, onto a level with the triangle's highest corner; 0 where the triangle is flat
   bool front;
   glm::dvec3 base;
   double alpha;  // coverage: 1 unless blended
@@ -27,6 +29,12 @@ struct Surface {
   /// A start on the side that `towards` points to.
   [[nodiscard]] glm::dvec3 start(const glm::dvec3& towards) const {
     return point + geometric * (glm::dot(geometric, towards) < 0 ? -offset : offset);
+  }
+  /// A shadow ray's start where the light is behind the triangle, but not behind the surface that its vertex normals
+  /// make.
+  [[nodiscard]] glm::dvec3 lifted_start() const { return point + vertex_normal * lift + geometric * offset; }
+  [[nodiscard]] bool is_lifted_to(const glm::dvec3& light) const {
+    return lift > 0 && glm::dot(geometric, light) <= 0 && glm::dot(vertex_normal, light) > 0;
   }
 };
 
@@ -60,7 +68,8 @@ class Surfaces {
   [[nodiscard]] glm::dvec4 base_color(const Point& p) const;
   [[nodiscard]] double coverage(const Point& p, double alpha) const;
   [[nodiscard]] double transmission(const Point& p) const;
-  [[nodiscard]] glm::dvec3 shading_normal(const Point& p, const glm::dvec3& geometric) const;
+  [[nodiscard]] glm::dvec3 vertex_normal(const Point& p, const glm::dvec3& geometric) const;
+  [[nodiscard]] glm::dvec3 mapped_normal(const Point& p, const glm::dvec3& n) const;
 
   const Scene& scene_;
   const World& world_;

@@ -11,6 +11,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 enum Kind : std::uint32_t { primary, shadow, reflection, refraction };
 
 double largest(const glm::dvec3& v) { return std::max(std::max(v.x, v.y), v.z); }
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; }
 
 /// −log2 of what a metre of the volume lets through; infinite where that is nothing, at whatever distance.
 glm::dvec3 stops_a_metre(const Material& m) {
@@ -75,9 +76,14 @@ void Whitted::shade(const Pending& ray, const Hit& hit, Work& work) const {
   Pending here = ray;
   here.width = ray.width + ray.spread * hit.t;
   const Surface s = surfaces_.at(hit, ray.ray.direction, here.width);
-  here.weight *= absorbed(ray, s, hit.t);
+  const glm::dvec3 left = absorbed(ray, s, hit.t);
+  here.weight *= left;
+  if (settings_.transparent_glass) {  // what is absorbed hides what is behind
+    work.sum.alpha += here.coverage * (1 - mean(left));
+    here.coverage *= mean(left);
+  }
   const glm::dvec3 weight = here.weight * s.alpha;
-  work.sum.alpha += ray.coverage * s.alpha;
+  work.sum.alpha += here.coverage * s.alpha;
   if (s.alpha < 1) {
     Pending straight = here;
     straight.weight *= 1 - s.alpha;
@@ -92,25 +98,23 @@ void Whitted::shade(const Pending& ray, const Hit& hit, Work& work) const {
   work.sum.color += weight * s.emission;
   const glm::dvec3 v = -ray.ray.direction;
   const double nv = std::clamp(glm::dot(s.normal, v), 1e-4, 1.0);
-  const double r0 = (s.ior - 1) / (s.ior + 1);
-  const glm::dvec3 f0 = glm::mix(glm::dvec3(r0 * r0), s.base, s.metallic);
-  const double mirror = std::pow(std::max(1 - s.roughness / 0.4, 0.0), 2);
-  const glm::dvec3 ambient = s.base * ((1 - s.metallic) * (1 - s.transmission)) + (1 - mirror) * schlick(f0, nv);
-  work.sum.color += weight * environment_ * ambient * s.occlusion;
-  light(s, weight, f0, v, work);
+  Lobes lobes = lobes_of(s, nv);
   if (s.transmission > 0) {
-    transmit(s, weight, mirror, nv, here, work);
-  } else {
-    reflect(s, weight * mirror * schlick(f0, nv), here, work);
+    const Interface face = see_through(s, nv, here, lobes);
+    work.sum.alpha -= transmit(s, weight, lobes, face, here, work);
   }
+  work.sum.color += weight * environment_ * ambient(s, lobes) * s.occlusion;
+  light(s, weight, lobes, v, work);
+  reflect(s, weight * lobes.share * lobes.mirrored, here, work);
 }
 
-void Whitted::light(const Surface& s, const glm::dvec3& weight, const glm::dvec3& f0, const glm::dvec3& v,
+void Whitted::light(const Surface& s, const glm::dvec3& weight, const Lobes& lobes, const glm::dvec3& v,
                     Work& work) const {
   for (const WorldLight& light : lights_) {
     const Arriving in = arriving(light, s.point);
-    if (!(glm::dot(s.normal, in.towards) > 0 && glm::dot(s.geometric, in.towards) > 0)) continue;
-    const glm::dvec3 carried = weight * reflectance(s, f0, v, in.towards) * in.radiance;
+    const bool faces = glm::dot(s.geometric, in.towards) > 0 || s.is_lifted_to(in.towards);
+    if (!(glm::dot(s.normal, in.towards) > 0 && faces)) continue;
+    const glm::dvec3 carried = weight * reflectance(s, lobes, v, in.towards) * in.radiance;
     if (!(largest(carried) > 0)) continue;
     work.sum.color += glm::max(carried, 0.0) * visibility(s, light, in, work.counts);
   }
@@ -120,7 +124,7 @@ void Whitted::light(const Surface& s, const glm::dvec3& weight, const glm::dvec3
 // before the point absorbs over the way from there; one it leaves gives that way back.
 glm::dvec3 Whitted::visibility(const Surface& s, const WorldLight& light, const Arriving& in,
                                ReferenceCounts& counts) const {
-  Ray ray{s.start(in.towards), in.towards, 0, infinity};
+  Ray ray{s.is_lifted_to(in.towards) ? s.lifted_start() : s.start(in.towards), in.towards, 0, infinity};
   if (light.kind != LightKind::directional) {
     const glm::dvec3 way = light.position - ray.origin;
     const double distance = glm::length(way);
@@ -162,36 +166,46 @@ glm::dvec3 Whitted::absorbed(const Pending& ray, const Surface& s, double t) con
   return inside == none || !(t > 0) ? glm::dvec3(1) : glm::exp2(-stops_a_metre(surfaces_.material(inside)) * t);
 }
 
-void Whitted::transmit(const Surface& s, const glm::dvec3& weight, double mirror, double nv, const Pending& parent,
-                       Work& work) const {
-  Pending through = parent;
-  double n1 = 1, n2 = s.ior;
+/// Step 7: the lobes of a surface that lets light through.
+Whitted::Interface Whitted::see_through(const Surface& s, double nv, const Pending& parent, Lobes& lobes) const {
+  Interface face{s.normal, 1, s.ior, parent.media};
   if (s.volume && s.front) {
-    n1 = ior(parent.media.top());
-    through.media.push(s.material);
+    face.n1 = ior(parent.media.top());
+    face.beyond.push(s.material);
   } else if (s.volume) {
-    through.media.remove(s.material);
-    n1 = s.ior;
-    n2 = ior(through.media.top());
+    face.beyond.remove(s.material);
+    face.n1 = s.ior;
+    face.n2 = ior(face.beyond.top());
   }
   const glm::dvec3 d = parent.ray.direction;
   // A shading normal that faces away from the ray has no Fresnel term: the true normal stands in.
-  const glm::dvec3 n = glm::dot(s.normal, d) < 0 ? s.normal : s.geometric;
-  const double f = fresnel(std::clamp(-glm::dot(n, d), 0.0, 1.0), n1, n2);
-  const glm::dvec3 reflected = glm::mix(glm::dvec3(f), schlick(s.base, nv), s.metallic);
-  reflect(s, weight * glm::mix(mirror, 1.0, s.transmission) * reflected, parent, work);
-  if (!(f < 1)) return;
+  if (!(glm::dot(s.normal, d) < 0)) face.normal = s.geometric;
+  lobes.dielectric = fresnel(std::clamp(-glm::dot(face.normal, d), 0.0, 1.0), face.n1, face.n2);
+  lobes.mirrored = glm::mix(glm::dvec3(lobes.dielectric), schlick(s.base, nv), s.metallic);
+  lobes.share = glm::mix(lobes.share, 1.0, s.transmission);
+  return face;
+}
+
+/// Step 9. What the ray takes along of its parent's coverage.
+double Whitted::transmit(const Surface& s, const glm::dvec3& weight, const Lobes& lobes, const Interface& face,
+                         const Pending& parent, Work& work) const {
+  if (!(lobes.dielectric < 1)) return 0;
+  Pending through = parent;
+  const glm::dvec3 d = parent.ray.direction;
   glm::dvec3 way = d;
   if (s.volume) {
-    const double eta = n1 / n2;
-    if (!bend(d, n, eta, way)) return;
-    if (glm::dot(way, s.geometric) >= 0 && !bend(d, s.geometric, eta, way)) return;
-    through.spread = eta * parent.spread + (glm::dot(way, n) - eta * glm::dot(d, n)) * s.curvature * parent.width;
+    const double eta = face.n1 / face.n2;
+    if (!bend(d, face.normal, eta, way)) return 0;
+    if (glm::dot(way, s.geometric) >= 0 && !bend(d, s.geometric, eta, way)) return 0;
+    through.spread = eta * parent.spread +
+                     (glm::dot(way, face.normal) - eta * glm::dot(d, face.normal)) * s.curvature * parent.width;
   }
-  through.weight = weight * s.base * (s.transmission * (1 - s.metallic) * (1 - f));
-  through.coverage = 0;
+  const glm::dvec3 share = s.base * (s.transmission * (1 - s.metallic) * (1 - lobes.dielectric));
+  through.media = face.beyond;
+  through.weight = weight * share;
+  through.coverage = settings_.transparent_glass ? parent.coverage * std::min(mean(share), 1.0) : 0;
   through.kind = refraction;
-  go_on(s, way, through, work);
+  return go_on(s, way, through, work) ? through.coverage : 0;
 }
 
 void Whitted::reflect(const Surface& s, const glm::dvec3& weight, const Pending& parent, Work& work) const {
@@ -205,14 +219,15 @@ void Whitted::reflect(const Surface& s, const glm::dvec3& weight, const Pending&
   go_on(s, glm::normalize(way), child, work);
 }
 
-/// Lets a child go if it is worth it; `child` still holds its parent's ray and generation.
-void Whitted::go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const {
+/// Lets a child go if it is worth it, and says so; `child` still holds its parent's ray and generation.
+bool Whitted::go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const {
   const double worth = std::max(largest(child.weight), child.coverage);
-  if (child.generation >= settings_.depth || !(worth > 0) || worth < settings_.cutoff) return;
+  if (child.generation >= settings_.depth || !(worth > 0) || worth < settings_.cutoff) return false;
   Pending& ray = work.rays.emplace_back(child);
   ++ray.generation;
   const bool back = child.kind == reflection;  // off the surface to the ray's own side; else through it
   ray.ray = {s.start(back ? s.geometric : -s.geometric), direction, 0, infinity};
+  return true;
 }
 
 }  // namespace sheaf::reference

@@ -55,11 +55,18 @@ class Whitted {
   };
 
   void shade(const Pending& ray, const Hit& hit, Work& work) const;
-  void light(const Surface& s, const glm::dvec3& weight, const glm::dvec3& f0, const glm::dvec3& v, Work& work) const;
-  void transmit(const Surface& s, const glm::dvec3& weight, double mirror, double nv, const Pending& parent,
-                Work& work) const;
+  struct Interface {  // of a surface that lets light through
+    glm::dvec3 normal;
+    double n1, n2;
+    Media beyond;
+  };
+
+  void light(const Surface& s, const glm::dvec3& weight, const Lobes& lobes, const glm::dvec3& v, Work& work) const;
+  [[nodiscard]] Interface see_through(const Surface& s, double nv, const Pending& parent, Lobes& lobes) const;
+  double transmit(const Surface& s, const glm::dvec3& weight, const Lobes& lobes, const Interface& face,
+                  const Pending& parent, Work& work) const;
   void reflect(const Surface& s, const glm::dvec3& weight, const Pending& parent, Work& work) const;
-  void go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const;
+  bool go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const;
   [[nodiscard]] glm::dvec3 absorbed(const Pending& ray, const Surface& s, double t) const;
   [[nodiscard]] glm::dvec3 visibility(const Surface& s, const WorldLight& light, const Arriving& in,
                                       ReferenceCounts& counts) const;

@@ -9,7 +9,7 @@ namespace sheaf {
 
 class Generate {
  public:
-  Generate(const Device& device, const Plan& plan, const Features& features, bool counted);
+  Generate(const Device& device, const Plan& plan, const Features& features, const RenderSettings& settings);
 
   /// The camera's rays into memory.reflection[1].
   void primary(Recorder& recorder, const RayMemory& memory, std::uint32_t rays) const;

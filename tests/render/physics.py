@@ -59,7 +59,10 @@ def reflected(base, normal, view, towards, metallic=0.0, roughness=1.0, ior=1.5,
     d = a2 / (np.pi * (dot(n, h) ** 2 * (a2 - 1) + 1) ** 2)
     visibility = 0.5 / (nl * np.sqrt(nv**2 * (1 - a2) + a2) + nv * np.sqrt(nl**2 * (1 - a2) + a2))
     f = schlick(f0_of(base, metallic, ior), dot(v, h))
-    diffuse = (1 - f) * (1 - metallic) * (1 - transmission) * base / np.pi
+    r0 = ((ior - 1) / (ior + 1)) ** 2
+    s = (1 - 0.6 * (max(roughness, 0.1) ** 2 - 0.01)) ** 3
+    most = (1 - r0) * (1 - s * (1 - nv) ** 5) * (1 - s * np.clip(1 - nl, 0, 1) ** 5) / (1 - s / 21)
+    diffuse = np.minimum(1 - f, most[..., None]) * (1 - metallic) * (1 - transmission) * base / np.pi
     return np.where((nl > 0)[..., None], (diffuse + f * (d * visibility)[..., None]) * nl[..., None], 0.0)
 
 
@@ -67,7 +70,8 @@ def ambient(base, normal, view, metallic=0.0, roughness=1.0, ior=1.5, occlusion=
     """What a radiance of 1 from all around adds: SHADING.md, step 5."""
     nv = np.clip(dot(unit(normal), unit(view)), 1e-4, 1)
     gloss = (1 - mirror_share(roughness)) * schlick(f0_of(base, metallic, ior), nv)
-    return ((1 - metallic) * np.asarray(base, float) + gloss) * occlusion
+    left = 1 - schlick(((ior - 1) / (ior + 1)) ** 2, nv)
+    return ((1 - metallic) * left * np.asarray(base, float) + gloss) * occlusion
 
 
 def pixels(width: int, height: int, xmag: float, ymag: float, centre=(0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:

@@ -128,7 +128,8 @@ def test_mirror_share_and_schlick(sheaf, tmp_path, metallic, roughness):
     f0 = 0.04 * (1 - metallic) + metallic * base
     share = max(1 - roughness / 0.4, 0) ** 2
     gloss = schlick(f0, 0.5)  # cos 60°
-    wanted = np.array((0.25, 0.5, 1)) * ((1 - metallic) * base + (1 - share) * gloss + share * gloss)
+    left = 1 - schlick(0.04, 0.5)  # of the part that is no metal, for its base
+    wanted = np.array((0.25, 0.5, 1)) * ((1 - metallic) * left * base + (1 - share) * gloss + share * gloss)
     close(rgb, wanted)
 
 
