@@ -123,3 +123,24 @@ def test_light_does_not_leak(sheaf, tmp_path):
             dark = (picture.alpha == 1) & (left if inside_ball else ~left)
             assert dark.sum() > 300
             assert picture.rgb[dark].max() == 0
+
+
+def test_all_strategies_alike(sheaf, tmp_path):
+    """A coarse matte, a glossy and a glass ball under a sun, a lamp and surroundings: the same bytes, near the reference."""
+    glb = Glb()
+    coarse = ball(6)
+    rough_glass = {"KHR_materials_transmission": {"transmissionFactor": 0.7}, "KHR_materials_volume": {
+        "thicknessFactor": 1, "attenuationColor": [1, 0.5, 0], "attenuationDistance": 0.5}}
+    kinds = [glb.material("matte"), glb.material("glossy", (0.8, 0.5, 0.3), 0.5, 0.2),
+             glb.material("glass", (1, 1, 1), 0, 0.3, rough_glass)]
+    nodes = [glb.node("ball", (2 * k - 2, 0, 0), mesh=glb.mesh(glb.primitive(coarse, material)))
+             for k, material in enumerate(kinds)]
+    nodes.append(glb.node("floor", mesh=glb.mesh(glb.primitive(facing_z(8, 8, -1.2), glb.material("floor")))))
+    nodes.append(glb.light("near", "point", 5, placed={"translation": (0.9, 1.2, 0.1)}))
+    strategies = ("bvh", "hybrid", "crsh", "rsh", "frustum", "classify", "brute", "reference")
+    options = ("--glass-alpha", "transparent")
+    first, *others, reference = shown(sheaf, tmp_path, glb, nodes, strategies=strategies, size="48x24", extent=3, options=options)
+    for other in others:
+        np.testing.assert_array_equal(first.rgba.view(np.uint16), other.rgba.view(np.uint16))
+    apart = np.abs(first.rgb - reference.rgb).max(-1) > 0.01 * (1 + reference.rgb.max(-1))
+    assert apart.mean() < 0.01
