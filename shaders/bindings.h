@@ -26,6 +26,9 @@
 #define SPEC_BY_PARENT 19
 #define SPEC_BUNDLE 20
 #define SPEC_GLASS_ALPHA 21
+#define SPEC_FACE_TANGENTS 22
+#define SPEC_MIRRORED_SKINS 23
+#define SPEC_MORPHED_ATTRIBUTES 24
 
 // Roles of storage buffers. A role has the same binding number in every shader; a kernel declares the roles it reads.
 #define ROLE_FRAME 0

@@ -74,7 +74,7 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   look_up_all(instance.material, TEXTURE_TRANSMISSION + 1u, uv0, uv1, texels);
   vec4 base = base_color_at(instance, m, v, b, texels[TEXTURE_BASE_COLOR]);
   if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
-  float cosine = dot(triangle_normal(corners.a, corners.b, corners.c, vec3(0)), direction) * instance.determinant_sign;
+  float cosine = dot(triangle_normal(corners.a, corners.b, corners.c, vec3(0)), direction) * front_sign(instance, corners);
   vec3 passed = vec3(0);
   if ((m.flags & MATERIAL_TRANSMISSIVE) != 0u) {
     float transmitted = clamp(m.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);

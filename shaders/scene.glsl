@@ -3,6 +3,11 @@
 #include "memory.glsl"
 #include "triangle.glsl"
 
+// The sign that turns (b − a) × (c − a) to the front: of the instance's matrix, or of the triangle's own skinning matrices.
+float front_sign(Instance i, Corners corners) {
+  return uintBitsToFloat(floatBitsToUint(i.determinant_sign) ^ ((corners.instance & TRIANGLE_MIRRORED) << 2));
+}
+
 uint instance_of(Corners corners) { return corners.instance & TRIANGLE_INSTANCE_MASK; }
 
 TriangleHit intersect_corners(Shear s, Corners v, float tmin, float tmax) {

@@ -174,7 +174,8 @@ SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
 // A triangle's last word: the instance, and whether a hit needs a second look: bit 31 alpha mask, bit 30 lets light pass.
 SHEAF_CONST TRIANGLE_MASKED = 0x80000000u;
 SHEAF_CONST TRIANGLE_TRANSLUCENT = 0x40000000u;
-SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x3FFFFFFFu;
+SHEAF_CONST TRIANGLE_MIRRORED = 0x20000000u;  // its skin mirrors it: its front is the other side
+SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x1FFFFFFFu;
 // A triangle of a material with any of these may let light through: shadow rays look closer.
 SHEAF_CONST MATERIAL_NOT_OPAQUE = MATERIAL_MASK | MATERIAL_BLEND | MATERIAL_TRANSMISSIVE;
 
@@ -250,8 +251,8 @@ struct Instance {
   uint dynamic;     // first vertex in the dynamic buffer, NO_INDEX where the instance is rigid
   uint material;
   uint object;      // node + 1
-  uint unused;      // structures read by address are whole pairs of words, see memory.glsl
-};
+  uint mirrors;     // its place among the Deforms where a joint of its skin mirrors, else NO_INDEX; read by animate_triangles only
+};                  // (structures read by address are whole pairs of words, see memory.glsl)
 
 struct Light {
   vec3 position;
@@ -320,6 +321,15 @@ struct Deform {     // one deforming instance's vertices
   uint instance;
   uint morph_normals;    // vec3 offset of the first target's normals, NO_INDEX: none
   uint morph_tangents;
+  uint flat_faces;       // not 0: its normals are those of its deformed triangles, written as 0
+  uint uv_from[2];       // where texture coordinates or colors are morphed: from the mesh's own place in their buffer
+  uint uv_to[2];         // to the instance's, …
+  uint uv_morphs[2];     // … by deltas: vec3 offset of the first target's (u, v, 0), NO_INDEX: none
+  uint color_from;
+  uint color_to;
+  uint color_morphs;     // r, g, b
+  uint alpha_morphs;     // (a, 0, 0)
+  uint face_tangents;    // of flat faces with tangents: vec3 offset of (a, b, 0) a triangle, see Mesh::face_tangents; else NO_INDEX
 };
 
 #ifdef __cplusplus

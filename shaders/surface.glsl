@@ -31,7 +31,8 @@ vec3 transform_normal(Instance i, vec3 v) { return vec3(dot(i.normal0, v), dot(i
 
 const float MAX_SPREAD = 1e3;  // of a ray's cone: past it nothing has detail left
 
-vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped, out vec3 vertex_normal) {
+// `side`: front_sign.
+vec3 shading_normal(Instance instance, float side, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped, out vec3 vertex_normal) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
@@ -47,7 +48,7 @@ vec3 shading_normal(Instance instance, uvec3 v, vec3 b, vec3 geometric, TextureU
   vec3 t = is_dynamic ? load_dynamic(d.x + 2u) * b.x + load_dynamic(d.y + 2u) * b.y + load_dynamic(d.z + 2u) * b.z
                       : transform_direction(instance, tangent.xyz);
   t = safe_normalize(t, vec3(0));
-  vec3 bitangent = cross(n, t) * (first_tangent.w < 0.0 ? -1.0 : 1.0) * instance.determinant_sign;
+  vec3 bitangent = cross(n, t) * (first_tangent.w < 0.0 ? -1.0 : 1.0) * side;
   vec3 texel = mapped * 2.0 - 1.0;
   return safe_normalize(t * (texel.x * use.strength) + bitangent * (texel.y * use.strength) + n * texel.z, n);
 }
@@ -147,7 +148,8 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   const float gamma7 = 4.172329e-7;
   s.point_error = gamma7 * (abs(v0 * b.x) + abs(v1 * b.y) + abs(v2 * b.z));
   s.reach = max_of(max(max(abs(v0 - point), abs(v1 - point)), abs(v2 - point)));
-  vec3 g = triangle_normal(v0, v1, v2, -direction) * instance.determinant_sign;
+  float side = front_sign(instance, corners);
+  vec3 g = triangle_normal(v0, v1, v2, -direction) * side;
   TexturePoint point_uv;
   s.curvature = 0.0;
   if (TEXTURED) {
@@ -159,7 +161,7 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
     if (width != 0.0) s.curvature = curvature_of(instance, v, b, slopes, along, across);
   }
   Texels texels = look_up_filtered(looks, point_uv);
-  vec3 n = shading_normal(instance, v, b, g, texels.normal, texels.of[TEXTURE_NORMAL].xyz, s.vertex_normal);
+  vec3 n = shading_normal(instance, side, v, b, g, texels.normal, texels.of[TEXTURE_NORMAL].xyz, s.vertex_normal);
   s.front = dot(g, direction) < 0.0;
   if (!s.front) s.curvature = -s.curvature;
   s.geometric = s.front ? g : -g;

@@ -39,6 +39,12 @@ glm::dmat4 translation(const glm::dvec3& t) {
   return m;
 }
 
+bool mirrors(const Skin& skin, const Pose& pose) {
+  for (std::size_t j = 0; j < skin.joints.size(); ++j)
+    if (glm::determinant(glm::dmat3(pose.world[skin.joints[j]] * skin.inverse_bind[j])) < 0) return true;
+  return false;
+}
+
 }  // namespace
 
 void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
@@ -65,6 +71,8 @@ void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
       instance.normal2 = glm::vec3(c[0].z, c[1].z, c[2].z);
       boxes_[i] = transformed(layout_.mesh_boxes[source.mesh], m);
       to_world_[i] = m;
+    } else if (instance.mirrors != none && !mirrors(scene_.skins[scene_.nodes[source.node].skin], pose)) {
+      instance.mirrors = none;
     }
     if (store(placed[i], instance)) moved[i] = true;
   }

@@ -23,7 +23,7 @@ Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, con
       recorder_(device),
       scene_(std::move(scene)),
       memory_(make_ray_memory(device, settings, plan_, features, scene_->lights())),
-      animate_(device, plan_, !scene_->layout().deforms.empty()),
+      animate_(device, plan_, scene_->layout()),
       objects_(device, plan_),
       generate_(device, plan_, features_, settings),
       compact_(device),

@@ -2,6 +2,7 @@
 #include "frame/scene_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -16,22 +17,17 @@ namespace sheaf {
 namespace {
 
 struct MeshPlace {  // where a mesh lies in the shared buffers, made on first use
-  bool placed = false;
+  bool placed = false, deforms = false;
   gpu::Instance place{};
   ObjectHierarchy hierarchy;
-  std::uint32_t joint_words = none, morph_first = none, morph_normals = none, morph_tangents = none;
+  std::uint32_t joint_words = none, morph_first = none, morph_normals = none, morph_tangents = none,
+                morph_colors = none, morph_alphas = none, face_tangents = none;
+  std::array<std::uint32_t, 2> morph_uvs{none, none};
 };
 
 Box triangle_box(const Mesh& mesh, const glm::uvec3& t) {
   const auto &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
   return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
-}
-
-std::uint32_t append_uvs(SceneLayout& layout, const std::vector<glm::vec2>& uvs) {
-  if (uvs.empty()) return none;
-  const auto first = static_cast<std::uint32_t>(layout.uvs.size());
-  layout.uvs.insert(layout.uvs.end(), uvs.begin(), uvs.end());
-  return first;
 }
 
 template <typename T>
@@ -58,16 +54,64 @@ std::uint32_t append_joints(SceneLayout& layout, const Mesh& mesh) {
 }
 
 // Deltas of all targets, one block after the other; an attribute that some target lacks is filled with zeros.
-std::uint32_t append_targets(SceneLayout& layout, const Mesh& mesh, std::vector<glm::vec3> MorphTarget::*attribute) {
+// `word_of` makes a value of an attribute the three floats that are kept.
+template <typename V, typename WordOf>
+std::uint32_t append_targets(SceneLayout& layout, const Mesh& mesh, std::vector<V> MorphTarget::*attribute,
+                             WordOf word_of) {
   const bool any =
       std::any_of(mesh.targets.begin(), mesh.targets.end(), [&](const auto& t) { return !(t.*attribute).empty(); });
   if (!any) return none;
   const auto first = static_cast<std::uint32_t>(layout.morphs.size());
   for (const auto& target : mesh.targets) {
-    layout.morphs.insert(layout.morphs.end(), (target.*attribute).begin(), (target.*attribute).end());
+    for (const V& value : target.*attribute) layout.morphs.push_back(word_of(value));
     layout.morphs.resize(layout.morphs.size() + mesh.positions.size() - (target.*attribute).size(), glm::vec3(0));
   }
   return first;
+}
+
+// Texture coordinates and colors that are morphed: the instance has a place of its own for them.
+void place_morphed_attributes(SceneLayout& layout, const Mesh& mesh, const MeshPlace& place, gpu::Instance& instance,
+                              gpu::Deform& d) {
+  const std::array from{place.place.uv0, place.place.uv1};
+  const std::array uvs{&mesh.uv0, &mesh.uv1};
+  const std::array to{&instance.uv0, &instance.uv1};
+  for (std::size_t set = 0; set < uvs.size(); ++set) {
+    d.uv_from[set] = from[set];
+    d.uv_morphs[set] = place.morph_uvs[set];
+    if (d.uv_morphs[set] == none) continue;
+    d.uv_to[set] = *to[set] = append(layout.uvs, *uvs[set]);
+    layout.morphed_attributes = true;
+  }
+  d.color_from = place.place.color;
+  d.color_morphs = place.morph_colors;
+  d.alpha_morphs = place.morph_alphas;
+  if (d.color_morphs == none && d.alpha_morphs == none) return;
+  d.color_to = instance.color = append(layout.colors, mesh.colors);
+  layout.morphed_attributes = true;
+}
+
+// What all instances of a deforming mesh share: its deltas, and how its faces' tangents run.
+void place_targets(SceneLayout& layout, const Mesh& mesh, MeshPlace& place) {
+  if (place.deforms) return;
+  place.deforms = true;
+  const auto same = [](const glm::vec3& v) { return v; };
+  const auto of_uv = [](const glm::vec2& v) { return glm::vec3(v, 0); };
+  place.morph_first = append_targets(layout, mesh, &MorphTarget::positions, same);
+  place.morph_normals = append_targets(layout, mesh, &MorphTarget::normals, same);
+  place.morph_tangents = append_targets(layout, mesh, &MorphTarget::tangents, same);
+  place.morph_uvs = {append_targets(layout, mesh, &MorphTarget::uv0, of_uv),
+                     append_targets(layout, mesh, &MorphTarget::uv1, of_uv)};
+  place.morph_colors = append_targets(layout, mesh, &MorphTarget::colors, [](const auto& c) { return glm::vec3(c); });
+  const bool fades = std::ranges::any_of(mesh.targets, [](const MorphTarget& t) {
+    return std::ranges::any_of(t.colors, [](const glm::vec4& c) { return c.a != 0; });
+  });
+  if (fades)
+    place.morph_alphas =
+        append_targets(layout, mesh, &MorphTarget::colors, [](const auto& c) { return glm::vec3(c.a, 0, 0); });
+  if (mesh.face_tangents.empty()) return;
+  place.face_tangents = static_cast<std::uint32_t>(layout.morphs.size());
+  for (const auto& edges : mesh.face_tangents) layout.morphs.emplace_back(edges, 0.0F);
+  layout.face_tangents = true;
 }
 
 void place_mesh(SceneLayout& layout, const Mesh& mesh, MeshPlace& place) {
@@ -87,8 +131,8 @@ void place_mesh(SceneLayout& layout, const Mesh& mesh, MeshPlace& place) {
     for (int k = 0; k < 3; ++k) layout.indices.push_back(mesh.triangles[t][k]);
   layout.positions.insert(layout.positions.end(), mesh.positions.begin(), mesh.positions.end());
   layout.normals.insert(layout.normals.end(), mesh.normals.begin(), mesh.normals.end());
-  p.uv0 = append_uvs(layout, mesh.uv0);
-  p.uv1 = append_uvs(layout, mesh.uv1);
+  p.uv0 = append(layout.uvs, mesh.uv0);
+  p.uv1 = append(layout.uvs, mesh.uv1);
   p.color = append(layout.colors, mesh.colors);
   p.tangent = append(layout.tangents, mesh.tangents);
 }
@@ -99,11 +143,7 @@ void place_deforming(SceneLayout& layout, const Scene& scene, const InstanceSour
   const Node& node = scene.nodes[source.node];
   const bool skinned = node.skin != none && !mesh.joints.empty();
   if (skinned && place.joint_words == none) place.joint_words = append_joints(layout, mesh);
-  if (!mesh.targets.empty() && place.morph_first == none) {
-    place.morph_first = append_targets(layout, mesh, &MorphTarget::positions);
-    place.morph_normals = append_targets(layout, mesh, &MorphTarget::normals);
-    place.morph_tangents = append_targets(layout, mesh, &MorphTarget::tangents);
-  }
+  place_targets(layout, mesh, place);
   gpu::Deform d{};
   d.first_vertex = instance.first_vertex;
   d.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
@@ -117,6 +157,13 @@ void place_deforming(SceneLayout& layout, const Scene& scene, const InstanceSour
   d.weight_first = layout.morph_weights;
   d.tangent = instance.tangent;
   d.instance = static_cast<std::uint32_t>(layout.instances.size());
+  d.flat_faces = mesh.flat ? 1 : 0;
+  d.face_tangents = place.face_tangents;
+  place_morphed_attributes(layout, mesh, place, instance, d);
+  if (skinned && may_mirror(scene, scene.skins[node.skin])) {
+    instance.mirrors = static_cast<std::uint32_t>(layout.deforms.size());
+    layout.mirrored_skins = true;
+  }
   layout.dynamic_vertices += d.vertex_count;
   layout.skin_matrices += skinned ? static_cast<std::uint32_t>(scene.skins[node.skin].joints.size()) : 0;
   layout.morph_weights += d.morph_targets;
@@ -214,7 +261,7 @@ SceneLayout lay_out(const Scene& scene, const RenderSettings& settings) {
     MeshPlace& place = places[source.mesh];
     gpu::Instance instance = place.place;
     instance.first_triangle = static_cast<std::uint32_t>(layout.triangles);
-    instance.dynamic = none;
+    instance.dynamic = instance.mirrors = none;
     instance.material = material_of[mesh.material];
     instance.object = source.node + 1;
     layout.triangles += instance.triangle_count;

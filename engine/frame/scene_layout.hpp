@@ -36,6 +36,9 @@ struct SceneLayout {
   std::vector<glm::vec3> morphs;
   std::uint32_t dynamic_vertices = 0, skin_matrices = 0, morph_weights = 0;
   std::uint64_t triangles = 0;
+  bool face_tangents = false;                // some deforming mesh has them
+  bool morphed_attributes = false;           // some have texture coordinates or colors that are morphed
+  bool mirrored_skins = false;               // some skin may have a joint that mirrors
   std::vector<std::uint32_t> node_children;  // WIDE words a node; the first `top_nodes` are the top level's
   std::vector<std::vector<std::uint32_t>> refit_by_height;  // of the instances' nodes that a part holds
   std::vector<std::uint32_t> node_instance;                 // a node (past the top level): its instance

@@ -46,6 +46,10 @@ struct Surfaces::Point {
   UvFootprint uv0, uv1;
   const Textures& textures;
 
+  [[nodiscard]] static const std::vector<glm::vec2>& uvs(const WorldInstance& in, const Mesh& mesh, int set) {
+    const auto& morphed = set == 0 ? in.uv0 : in.uv1;
+    return !morphed.empty() ? morphed : set == 0 ? mesh.uv0 : mesh.uv1;
+  }
   [[nodiscard]] glm::dvec4 look_up(const TextureUse& use, TexelKind kind = TexelKind::number) const {
     return filtered ? textures.mean(use, uv0, uv1, kind) : textures.at(use, uv0, uv1, kind);
   }
@@ -56,14 +60,15 @@ Surfaces::Point Surfaces::point(const Hit& hit) const {
   const ReferenceTriangle& t = world_.triangles[hit.triangle];
   const Mesh& mesh = scene_.meshes[t.mesh];
   const glm::uvec3 v = mesh.triangles[t.triangle_in_mesh];
+  const WorldInstance& instance = world_.instances[t.instance];
   return {t,
-          world_.instances[t.instance],
+          instance,
           mesh,
           scene_.materials[mesh.material],
           v,
           hit.barycentric,
-          {interpolate(mesh.uv0, v, hit.barycentric, glm::dvec2(0))},
-          {interpolate(mesh.uv1, v, hit.barycentric, glm::dvec2(0))},
+          {interpolate(Point::uvs(instance, mesh, 0), v, hit.barycentric, glm::dvec2(0))},
+          {interpolate(Point::uvs(instance, mesh, 1), v, hit.barycentric, glm::dvec2(0))},
           textures_};
 }
 
@@ -78,7 +83,7 @@ bool Surfaces::is_volume(std::uint32_t index) const {
 
 glm::dvec4 Surfaces::base_color(const Point& p) const {
   return glm::dvec4(p.material.base_color) * p.look_up(p.material.base_color_texture, textures_.base_kind(p.material)) *
-         interpolate(p.mesh.colors, p.v, p.b, glm::dvec4(1));
+         interpolate(p.instance.colors.empty() ? p.mesh.colors : p.instance.colors, p.v, p.b, glm::dvec4(1));
 }
 
 double Surfaces::coverage(const Point& p, double alpha) const {
@@ -97,7 +102,8 @@ bool Surfaces::exists(const Hit& hit) const {
 
 glm::dvec3 Surfaces::front_normal(const Hit& hit, const glm::dvec3& otherwise) const {
   const ReferenceTriangle& t = world_.triangles[hit.triangle];
-  return unit(glm::cross(t.v[1] - t.v[0], t.v[2] - t.v[0]), otherwise) * world_.instances[t.instance].side;
+  return unit(glm::cross(t.v[1] - t.v[0], t.v[2] - t.v[0]), otherwise) *
+         world_.instances[t.instance].side_of(scene_.meshes[t.mesh].triangles[t.triangle_in_mesh]);
 }
 
 glm::dvec3 Surfaces::vertex_normal(const Point& p, const glm::dvec3& geometric) const {
@@ -108,7 +114,7 @@ glm::dvec3 Surfaces::mapped_normal(const Point& p, const glm::dvec3& n) const {
   if (!p.material.normal_texture.present() || p.instance.tangents.empty()) return n;
   const glm::dvec3 t = unit(interpolate(p.instance.tangents, p.v, p.b, glm::dvec3(0)), glm::dvec3(0));
   const double handedness = p.mesh.tangents[p.v.x].w < 0 ? -1 : 1;  // the same at all three vertices
-  const glm::dvec3 bitangent = glm::cross(n, t) * (handedness * p.instance.side);
+  const glm::dvec3 bitangent = glm::cross(n, t) * (handedness * p.instance.side_of(p.v));
   const glm::dvec3 texel = glm::dvec3(p.look_up(p.material.normal_texture)) * 2.0 - 1.0;
   const double strength = p.material.normal_texture.strength;
   return unit(t * (texel.x * strength) + bitangent * (texel.y * strength) + n * texel.z, n);
@@ -140,8 +146,8 @@ double Surfaces::spread_over(Point& p, const glm::dvec3& geometric, const glm::d
     f.along = slope(uvs, along, glm::dvec2(0)) * width;
     f.across = slope(uvs, across, glm::dvec2(0)) * width;
   };
-  widen(p.uv0, p.mesh.uv0);
-  widen(p.uv1, p.mesh.uv1);
+  widen(p.uv0, Point::uvs(p.instance, p.mesh, 0));
+  widen(p.uv1, Point::uvs(p.instance, p.mesh, 1));
   p.filtered = true;
   const double size = glm::length(interpolate(p.instance.normals, p.v, p.b, glm::dvec3(0)));
   if (!(size > 0)) return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/world.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "core/error.hpp"
@@ -22,12 +23,14 @@ glm::dmat3 normal_matrix(const glm::dmat3& m) {
   return glm::determinant(m) < 0 ? -cofactors : cofactors;
 }
 
-glm::dvec3 morphed(const glm::vec3& rest, std::size_t vertex, const Mesh& mesh, const std::vector<double>& weights,
-                   std::vector<glm::vec3> MorphTarget::*attribute) {
-  glm::dvec3 value(rest);
+template <int n>
+glm::vec<n, double> morphed(const glm::vec<n, float>& rest, std::size_t vertex, const Mesh& mesh,
+                            const std::vector<double>& weights,
+                            std::vector<glm::vec<n, float>> MorphTarget::*attribute) {
+  glm::vec<n, double> value(rest);
   for (std::size_t t = 0; t < mesh.targets.size() && t < weights.size(); ++t) {
     const auto& deltas = mesh.targets[t].*attribute;
-    if (!deltas.empty()) value += weights[t] * glm::dvec3(deltas[vertex]);
+    if (!deltas.empty()) value += weights[t] * glm::vec<n, double>(deltas[vertex]);
   }
   return value;
 }
@@ -70,6 +73,38 @@ void place(WorldInstance& into, const Mesh& mesh, const std::vector<double>& wei
   }
 }
 
+/// Values of an attribute that some target changes; else nothing.
+template <int n>
+std::vector<glm::vec<n, float>> morphed_values(const Mesh& mesh, const std::vector<glm::vec<n, float>>& rest,
+                                               const std::vector<double>& weights,
+                                               std::vector<glm::vec<n, float>> MorphTarget::*attribute) {
+  std::vector<glm::vec<n, float>> values;
+  if (std::ranges::all_of(mesh.targets, [&](const MorphTarget& t) { return (t.*attribute).empty(); })) return values;
+  for (std::size_t v = 0; v < rest.size(); ++v) values.emplace_back(morphed(rest[v], v, mesh, weights, attribute));
+  return values;
+}
+
+void morph_attributes(WorldInstance& into, const Mesh& mesh, const std::vector<double>& weights) {
+  into.uv0 = morphed_values(mesh, mesh.uv0, weights, &MorphTarget::uv0);
+  into.uv1 = morphed_values(mesh, mesh.uv1, weights, &MorphTarget::uv1);
+  into.colors = morphed_values(mesh, mesh.colors, weights, &MorphTarget::colors);
+  for (glm::vec4& color : into.colors) color = glm::clamp(color, 0.0F, 1.0F);
+}
+
+/// Normals and tangents of a deformed mesh whose file has no normals: those of its deformed triangles.
+void follow_faces(WorldInstance& into, const Mesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::uvec3 v = mesh.triangles[t];
+    const glm::dvec3 e1 = into.positions[v.y] - into.positions[v.x], e2 = into.positions[v.z] - into.positions[v.x];
+    for (int c = 0; c < 3; ++c) {
+      into.normals[v[c]] = glm::dvec3(0);  // the geometric normal stands in for none
+      if (mesh.tangents.empty()) continue;
+      const glm::dvec2 edges(mesh.face_tangents[t]);
+      into.tangents[v[c]] = e1 * edges.x + e2 * edges.y;
+    }
+  }
+}
+
 void add_triangles(World& world, const Mesh& mesh) {
   const auto instance = static_cast<std::uint32_t>(world.instances.size() - 1);
   const WorldInstance& in = world.instances.back();
@@ -89,15 +124,22 @@ void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t 
     for (std::uint32_t m = node.first_mesh; m < node.first_mesh + node.mesh_count; ++m) {
       const Mesh& mesh = scene.meshes[m];
       const auto first = static_cast<std::uint32_t>(world.triangles.size());
-      WorldInstance& into = world.instances.emplace_back(WorldInstance{index, m, first, 1, {}, {}, {}});
+      WorldInstance& into = world.instances.emplace_back(WorldInstance{index, m, first, 1, {}, {}, {}, {}, {}, {}, {}});
       if (node.skin != none && !mesh.joints.empty()) {
         const auto joints = joint_matrices(scene, pose, node.skin, world.origin);
         place(into, mesh, pose.morph_weights[index], [&](std::size_t v) { return blended(mesh, v, joints); });
+        if (std::ranges::any_of(joints,
+                                [](const glm::dmat4& joint) { return glm::determinant(glm::dmat3(joint)) < 0; }))
+          for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            into.determinants.push_back(glm::determinant(glm::dmat3(blended(mesh, v, joints))));
+        if (mesh.flat) follow_faces(into, mesh);
       } else {
         const glm::dmat4 matrix = relative_to(world.origin, pose.world[index] * instance);
         into.side = glm::determinant(glm::dmat3(matrix)) < 0 ? -1 : 1;
         place(into, mesh, pose.morph_weights[index], [&](std::size_t) -> const glm::dmat4& { return matrix; });
+        if (mesh.flat && !mesh.targets.empty()) follow_faces(into, mesh);
       }
+      morph_attributes(into, mesh, pose.morph_weights[index]);
       add_triangles(world, mesh);
     }
   }

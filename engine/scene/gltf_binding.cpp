@@ -67,7 +67,25 @@ std::vector<glm::dmat4> read_instances(const GltfFile& file, const Accessors& ac
   return matrices;
 }
 
-void bind_skin(GltfFile& file, const MeshEntry& mesh, const Scene& scene, std::size_t index, Node& node) {
+// A joint outside the scene still has a place: that of the nodes it hangs from (glTF 2.0, 3.7.3.2 wants all of a skin's
+// joints in the scene). `posed`: the nodes of Scene::order and Scene::outside.
+void pose_joints(GltfFile& file, std::uint32_t skin, const std::string& place, Scene& scene, std::vector<bool>& posed) {
+  std::uint32_t first = none;
+  for (const std::uint32_t joint : scene.skins[skin].joints) {
+    const auto at_end = static_cast<std::ptrdiff_t>(scene.outside.size());
+    for (std::uint32_t node = joint; node != none && !posed[node]; node = scene.nodes[node].parent) {
+      posed[node] = true;
+      scene.outside.insert(scene.outside.begin() + at_end, node);
+      if (first == none) first = joint;
+    }
+  }
+  if (first == none) return;
+  file.warn(place, "joint " + std::to_string(first) + " of " + at("skins", skin) +
+                       " is not in the scene; joints outside it are placed by the nodes they hang from");
+}
+
+void bind_skin(GltfFile& file, const MeshEntry& mesh, Scene& scene, std::size_t index, Node& node,
+               std::vector<bool>& posed) {
   const int skin = file.model.nodes[index].skin;
   if (skin < 0 || mesh.count == 0) return;
   const std::string place = at("nodes", index);
@@ -81,6 +99,7 @@ void bind_skin(GltfFile& file, const MeshEntry& mesh, const Scene& scene, std::s
                          at("skins", static_cast<std::size_t>(skin)) + " has " + std::to_string(joints));
   }
   node.skin = static_cast<std::uint32_t>(skin);
+  pose_joints(file, node.skin, place, scene, posed);
 }
 
 }  // namespace
@@ -88,6 +107,8 @@ void bind_skin(GltfFile& file, const MeshEntry& mesh, const Scene& scene, std::s
 void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& scene) {
   const Accessors accessors(file);
   for (std::size_t i = 0; i < file.model.skins.size(); ++i) scene.skins.push_back(read_skin(file, accessors, i));
+  std::vector<bool> posed(scene.nodes.size(), false);
+  for (const std::uint32_t i : scene.order) posed[i] = true;
   std::uint64_t instances = 0;
   for (const std::uint32_t i : scene.order) {
     const tinygltf::Node& source = file.model.nodes[i];
@@ -101,10 +122,16 @@ void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& sc
       file.fail(at("nodes", i) + ".weights", "has " + std::to_string(node.morph_weights.size()) + " weights for " +
                                                  std::to_string(mesh.targets) + " morph targets");
     }
-    bind_skin(file, mesh, scene, i, node);
+    bind_skin(file, mesh, scene, i, node, posed);
     if (const auto* e = extension(file.json["nodes"][i], "EXT_mesh_gpu_instancing")) {
       node.instances =
           read_instances(file, accessors, e->at("attributes"), at("nodes", i) + ".EXT_mesh_gpu_instancing");
+      if (node.skin != none) {
+        // A skin's joints alone say where its mesh is: the node's own transform, which instances stand in, does not.
+        file.warn(at("nodes", i) + ".EXT_mesh_gpu_instancing",
+                  "is ignored: the node has a skin, and is drawn once, where its joints are");
+        node.instances.clear();
+      }
       instances += node.instances.size();
       if (instances > file.limits.nodes)
         file.over_limit(at("nodes", i), "more than " + std::to_string(file.limits.nodes) + " instances");

@@ -2,9 +2,12 @@
 #include "scene/gltf_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "scene/mesh_attributes.hpp"
 
@@ -105,20 +108,61 @@ void read_skinning(const Reader& in, Mesh& mesh) {
   normalize_weights(in, mesh);
 }
 
+// The deltas of one attribute of a target; nothing where it has none, or none that is not 0.
+template <class V>
+std::vector<V> deltas(const Reader& in, const std::map<std::string, int>& target, const std::string& place,
+                      const char* name) {
+  const auto found = target.find(name);
+  if (found == target.end()) return {};
+  if (in.accessors.count(found->second) != in.vertices)
+    in.file.fail(place, std::string(name) + " has not as many elements as the primitive's POSITION");
+  std::vector<V> values;
+  bool read = false;
+  if constexpr (std::is_same_v<V, glm::vec4>) {
+    read = in.accessors.width(found->second) == 3;  // alpha's deltas are 0
+    if (read)
+      for (const glm::vec3& rgb : deltas<glm::vec3>(in, target, place, name)) values.emplace_back(rgb, 0.0f);
+  }
+  if (!read)
+    values = as_vectors<V>(
+        in.accessors.floats(found->second, sizeof(V) / sizeof(float), Components::floats_quantized, name));
+  if (std::ranges::all_of(values, [](const V& v) { return v == V(0); })) values.clear();
+  return values;
+}
+
+// What a target's attribute has no use for: a warning for each primitive, since models have dozens of targets.
+void warn_of_unread(const Reader& in) {
+  static constexpr std::array read{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+  std::set<std::string> told;
+  for (std::size_t t = 0; t < in.primitive.targets.size(); ++t) {
+    for (const auto& [name, accessor] : in.primitive.targets[t]) {
+      const bool known = std::ranges::find(read, name) != read.end();
+      if (name.starts_with('_') || name == "NORMAL" || name == "TANGENT" || !told.insert(name).second) continue;
+      const std::string place = in.place + "." + at("targets", t) + "." + name.substr(0, 40);
+      if (!known) {
+        told.insert(name);
+        in.file.warn(place, "is ignored: POSITION, NORMAL, TANGENT, TEXCOORD_0, TEXCOORD_1 and COLOR_0 are morphed");
+      } else if (in.accessor(name.c_str()) < 0) {
+        in.file.warn(place, "is ignored: the primitive has no " + name + " for it to change");
+      }
+    }
+  }
+}
+
 void read_targets(const Reader& in, Mesh& mesh) {
   for (std::size_t t = 0; t < in.primitive.targets.size(); ++t) {
-    Reader target = in;
-    target.place += ".targets[" + std::to_string(t) + "]";
-    const auto deltas = [&](const char* name) -> std::vector<glm::vec3> {
-      const auto found = in.primitive.targets[t].find(name);
-      if (found == in.primitive.targets[t].end()) return {};
-      if (in.accessors.count(found->second) != in.vertices) {
-        in.file.fail(target.place, std::string(name) + " has not as many elements as the primitive's POSITION");
-      }
-      return as_vectors<glm::vec3>(in.accessors.floats(found->second, 3, Components::floats_quantized, name));
-    };
-    mesh.targets.push_back({deltas("POSITION"), deltas("NORMAL"), deltas("TANGENT")});
+    const auto& source = in.primitive.targets[t];
+    const std::string place = in.place + ".targets[" + std::to_string(t) + "]";
+    MorphTarget target;
+    target.positions = deltas<glm::vec3>(in, source, place, "POSITION");
+    target.normals = deltas<glm::vec3>(in, source, place, "NORMAL");
+    target.tangents = deltas<glm::vec3>(in, source, place, "TANGENT");
+    if (!mesh.uv0.empty()) target.uv0 = deltas<glm::vec2>(in, source, place, "TEXCOORD_0");
+    if (!mesh.uv1.empty()) target.uv1 = deltas<glm::vec2>(in, source, place, "TEXCOORD_1");
+    if (!mesh.colors.empty()) target.colors = deltas<glm::vec4>(in, source, place, "COLOR_0");
+    mesh.targets.push_back(std::move(target));
   }
+  warn_of_unread(in);
 }
 
 std::vector<std::uint32_t> read_indices(const Reader& in) {

@@ -41,6 +41,7 @@ double corner_angle(const glm::dvec3& at, const glm::dvec3& b, const glm::dvec3&
 struct FaceTangent {
   glm::dvec3 direction{0};  // dP/du, unit; zero where the texture coordinates have no area
   bool mirrored = false;    // the image is seen mirrored from the face's front: w = -1
+  glm::dvec2 edges{1, 0};   // the direction's weights of the face's edges e1 and e2, up to a positive factor
 };
 
 FaceTangent face_tangent(const Mesh& mesh, const std::vector<glm::vec2>& uv, const glm::uvec3& t) {
@@ -50,10 +51,13 @@ FaceTangent face_tangent(const Mesh& mesh, const std::vector<glm::vec2>& uv, con
   const double area = d1.x * d2.y - d2.x * d1.y;
   // The bitangent, cross(n, t) * w, is up in the image (glTF 2.0, 3.9.3), against v, which grows downwards. An image
   // that is seen upright from the face's front therefore has a negative area in (u, v), and w = +1.
-  const glm::dvec3 along = (e1 * d2.y - e2 * d1.y) * (area < 0 ? -1.0 : 1.0);
+  const glm::dvec2 edges = glm::dvec2(d2.y, -d1.y) * (area < 0 ? -1.0 : 1.0);
+  const double largest = std::max(std::abs(edges.x), std::abs(edges.y));
+  if (area == 0 || !(largest > 0) || !std::isfinite(largest)) return {};
+  const glm::dvec3 along = e1 * edges.x + e2 * edges.y;
   const double length = glm::length(along);
-  if (area == 0 || !(length > 0) || !std::isfinite(length)) return {};
-  return {along / length, area > 0};
+  if (!(length > 0) || !std::isfinite(length)) return {glm::dvec3(0), area > 0, edges / largest};
+  return {along / length, area > 0, edges / largest};
 }
 
 // Vertices that both kinds of charts use get a second copy for the mirrored one.
@@ -99,10 +103,14 @@ void reorder_vertices(Mesh& mesh, const std::vector<std::uint32_t>& order) {
     reorder(target.positions, order);
     reorder(target.normals, order);
     reorder(target.tangents, order);
+    reorder(target.uv0, order);
+    reorder(target.uv1, order);
+    reorder(target.colors, order);
   }
 }
 
 void make_flat_normals(Mesh& mesh) {
+  mesh.flat = true;
   mesh.tangents.clear();
   mesh.normals.clear();
   for (MorphTarget& target : mesh.targets) {
@@ -153,6 +161,8 @@ void make_tangents(Mesh& mesh, const TextureUse& use) {
     for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = face_tangent(mesh, uv, mesh.triangles[f]);
     split_mirrored(mesh, faces);
   }
+  if (mesh.flat)
+    for (const FaceTangent& face : faces) mesh.face_tangents.emplace_back(face.edges);
 
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
   std::vector<float> handedness(mesh.positions.size(), 1.0f);

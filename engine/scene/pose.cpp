@@ -106,6 +106,13 @@ void each_channel(const Scene& scene, const std::vector<std::uint32_t>& animatio
   }
 }
 
+// Calls visit(node), parents before children.
+template <class Visit>
+void each_posed(const Scene& scene, const Visit& visit) {
+  for (const std::uint32_t i : scene.order) visit(i);
+  for (const std::uint32_t i : scene.outside) visit(i);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> select_animations(const Scene& scene, const std::string& selector) {
@@ -157,11 +164,11 @@ Pose evaluate_pose(const Scene& scene, const std::vector<std::uint32_t>& animati
   });
 
   pose.world.assign(scene.nodes.size(), glm::dmat4(1));
-  for (const std::uint32_t i : scene.order) {
+  each_posed(scene, [&](std::uint32_t i) {
     const Node& node = scene.nodes[i];
     const glm::dmat4 local = from_parts[i] ? matrix_of(parts[i]) : node.matrix;
     pose.world[i] = node.parent == none ? local : pose.world[node.parent] * local;
-  }
+  });
   return pose;
 }
 
@@ -170,11 +177,35 @@ std::vector<bool> moving_nodes(const Scene& scene, const std::vector<std::uint32
   each_channel(scene, animations, [&](const Channel& channel) {
     if (channel.path != ChannelPath::weights) moving[channel.node] = true;
   });
-  for (const std::uint32_t i : scene.order) {
+  each_posed(scene, [&](std::uint32_t i) {
     const std::uint32_t parent = scene.nodes[i].parent;
     if (parent != none && moving[parent]) moving[i] = true;
-  }
+  });
   return moving;
+}
+
+bool may_mirror(const Scene& scene, const Skin& skin) {
+  std::vector<bool> animated(scene.nodes.size(), false);
+  for (const Animation& animation : scene.animations) {
+    for (const Channel& channel : animation.channels) {
+      if (channel.path != ChannelPath::scale) continue;
+      // A spline between positive keys may swing below 0.
+      if (channel.interpolation == Interpolation::cubic_spline ||
+          std::ranges::any_of(channel.values, [](double v) { return v < 0; }))
+        animated[channel.node] = true;
+    }
+  }
+  const auto mirrors = [&](std::uint32_t node) {
+    const Node& n = scene.nodes[node];
+    return animated[node] ||
+           (n.has_matrix ? glm::determinant(glm::dmat3(n.matrix)) : n.scale.x * n.scale.y * n.scale.z) < 0;
+  };
+  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+    if (glm::determinant(glm::dmat3(skin.inverse_bind[j])) < 0) return true;
+    for (std::uint32_t node = skin.joints[j]; node != none; node = scene.nodes[node].parent)
+      if (mirrors(node)) return true;
+  }
+  return false;
 }
 
 std::vector<bool> morphing_nodes(const Scene& scene, const std::vector<std::uint32_t>& animations) {

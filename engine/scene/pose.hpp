@@ -11,7 +11,7 @@
 namespace sheaf {
 
 struct Pose {
-  std::vector<glm::dmat4> world;                   // a node: local to world; identity for nodes outside the scene
+  std::vector<glm::dmat4> world;  // a node: local to world; identity for nodes in neither Scene::order nor outside
   std::vector<std::vector<double>> morph_weights;  // a node
 };
 
@@ -25,6 +25,10 @@ struct Pose {
 
 /// True for each node whose world matrix can change under these animations (itself or an ancestor animated).
 [[nodiscard]] std::vector<bool> moving_nodes(const Scene& scene, const std::vector<std::uint32_t>& animations);
+
+/// Whether a joint of the skin may mirror what it carries, at rest or under any animation: a scale or a matrix whose
+/// determinant is negative on the way from the root, or its inverse bind matrix.
+[[nodiscard]] bool may_mirror(const Scene& scene, const Skin& skin);
 
 /// True for each node whose morph weights are animated.
 [[nodiscard]] std::vector<bool> morphing_nodes(const Scene& scene, const std::vector<std::uint32_t>& animations);

@@ -60,13 +60,15 @@ struct Material {
 
 struct MorphTarget {  // deltas, one an attribute a vertex; an empty vector is all zero
   std::vector<glm::vec3> positions, normals, tangents;
+  std::vector<glm::vec2> uv0, uv1;
+  std::vector<glm::vec4> colors;
 };
 
 struct Mesh {            // one glTF primitive of triangles: one material
   std::string name;      // "meshes[3].primitives[0] (Body)"
   glm::dvec3 centre{0};  // positions are stored relative to it, so that far-off vertices keep their precision
   std::vector<glm::vec3> positions;                  // object space minus centre
-  std::vector<glm::vec3> normals;                    // unit, same count; generated flat where the file has none
+  std::vector<glm::vec3> normals;                    // unit, same count; the rest pose's flat ones where `flat`
   std::vector<glm::vec4> tangents;                   // empty unless the material has a normal map; w = handedness
   std::vector<glm::vec2> uv0, uv1;                   // empty where the file has none
   std::vector<glm::vec4> colors;                     // linear RGBA, empty where the file has none
@@ -74,7 +76,11 @@ struct Mesh {            // one glTF primitive of triangles: one material
   std::vector<std::array<float, 8>> weights;         // normalised to sum 1
   std::vector<MorphTarget> targets;
   std::vector<glm::uvec3> triangles;
-  std::uint32_t material = 0;  // index into Scene::materials, always valid
+  // The file has no normals: triangle t has vertices 3t, 3t + 1, 3t + 2 to itself, and where it is deformed its normal
+  // is that of its deformed corners.
+  bool flat = false;
+  std::vector<glm::vec2> face_tangents;  // of flat ones with tangents, a triangle: (a, b), +u runs along a·e1 + b·e2
+  std::uint32_t material = 0;            // index into Scene::materials, always valid
 };
 
 struct Skin {
@@ -145,6 +151,8 @@ struct Scene {
   std::vector<Node> nodes;
   std::vector<std::uint32_t> roots;  // of the chosen glTF scene
   std::vector<std::uint32_t> order;  // nodes reachable from roots, parents before children
+  // Joints that are not in the scene and what they hang from, parents before children: they move, and show nothing.
+  std::vector<std::uint32_t> outside;
   std::vector<Skin> skins;
   std::vector<Light> lights;
   std::vector<Camera> cameras;

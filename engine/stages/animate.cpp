@@ -5,10 +5,14 @@
 
 namespace sheaf {
 
-Animate::Animate(const Device& device, const Plan& plan, bool deforms) {
-  const std::array constants{SpecConstant{SPEC_POSED, plan.posed}};
+Animate::Animate(const Device& device, const Plan& plan, const SceneLayout& layout) {
+  const std::array constants{SpecConstant{SPEC_POSED, plan.posed},
+                             SpecConstant{SPEC_MIRRORED_SKINS, layout.mirrored_skins}};
   triangles_ = Kernel(device, "animate_triangles", constants);
-  if (deforms) vertices_ = Kernel(device, "animate_vertices");
+  if (layout.deforms.empty()) return;
+  const std::array deforming{SpecConstant{SPEC_FACE_TANGENTS, layout.face_tangents},
+                             SpecConstant{SPEC_MORPHED_ATTRIBUTES, layout.morphed_attributes}};
+  vertices_ = Kernel(device, "animate_vertices", deforming);
 }
 
 void Animate::record(Recorder& recorder, const DeviceScene& scene, const Motion& motion) const {

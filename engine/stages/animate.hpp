@@ -9,7 +9,7 @@ namespace sheaf {
 
 class Animate {
  public:
-  Animate(const Device& device, const Plan& plan, bool deforms);
+  Animate(const Device& device, const Plan& plan, const SceneLayout& layout);
   void record(Recorder& recorder, const DeviceScene& scene, const Motion& motion) const;
 
  private:
