@@ -56,8 +56,9 @@ struct CameraPath {
 /// orthonormalisation). The vertical field of view is kept whatever the image's aspect.
 [[nodiscard]] CameraView view_of(const Camera& camera, const glm::dmat4& node_to_world, double aspect);
 
-/// Frames the whole box [lo, hi]: 45° vertical field of view, seen from +Z a little from above and the right, so that
-/// the bounding sphere fits both axes with a 5 % margin. An empty or point-sized box is framed as if 1 m wide.
+/// Frames the whole box [lo, hi]: 45° vertical field of view, seen from +Z a little from above and the right, from as
+/// near as leaves 5 % of the picture's width and height free on each side of the corners. An empty or point-sized box
+/// is framed as a cube of 1 m.
 [[nodiscard]] CameraView framing_view(const glm::dvec3& lo, const glm::dvec3& hi, double aspect);
 
 }  // namespace sheaf

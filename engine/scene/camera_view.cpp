@@ -31,19 +31,37 @@ CameraView view_of(const Camera& camera, const glm::dmat4& node_to_world, double
 }
 
 CameraView framing_view(const glm::dvec3& lo, const glm::dvec3& hi, double aspect) {
-  constexpr double margin = 1.05;
+  constexpr double used = 0.9;  // of the picture's width or height: 5 % stay free on each side
   const bool usable = is_finite(lo) && is_finite(hi) && glm::all(glm::lessThanEqual(lo, hi));
   const glm::dvec3 centre = usable ? lo * 0.5 + hi * 0.5 : glm::dvec3(0);
-  double radius = usable ? glm::length(hi * 0.5 - lo * 0.5) : 0;
-  if (!(radius > 0)) radius = std::sqrt(3.0) / 2;  // of a cube of 1 m
+  glm::dvec3 half = usable ? hi * 0.5 - lo * 0.5 : glm::dvec3(0);
+  if (!(glm::length(half) > 0)) half = glm::dvec3(0.5);
+  const double size = std::max({half.x, half.y, half.z});
+  const double second = half.x + half.y + half.z - size - std::min({half.x, half.y, half.z});
 
   CameraView view;  // 45° by default
   const double wide = aspect > 0 && std::isfinite(aspect) ? aspect : 1;
-  // The sphere touches the cone of the narrower axis where sin(half angle) = radius / distance.
-  const double half = std::atan(view.tan_half_y * std::min(1.0, wide));
+  const glm::dvec2 slope = used * view.tan_half_y * glm::dvec2(wide, 1);
   const glm::dvec3 back = glm::normalize(glm::dvec3(0.35, 0.3, 1.0));
-  const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), back));
-  view.to_world = rigid({x, glm::cross(back, x), back}, centre + back * (margin * radius / std::sin(half)));
+  const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), back));
+  const glm::dmat3 axes(right, glm::cross(back, right), back);
+  // In units of `size` from the centre, along the camera's axes. A corner p is inside for an eye at (x, y, z) where
+  // |p.x − x| ≤ slope.x·(z − p.z), that is x ≥ p.x + slope.x·p.z − slope.x·z and x ≤ p.x − slope.x·p.z + slope.x·z, and
+  // so for y: from the least z for which both have a solution on, and at that one two sides touch the margins.
+  glm::dvec2 most(-1e300), least(1e300);
+  double nearest = -1e300;  // along `back`
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const glm::dvec3 p = glm::transpose(axes) * (signs * (half / size));
+    most = glm::max(most, glm::dvec2(p) + slope * p.z);
+    least = glm::min(least, glm::dvec2(p) - slope * p.z);
+    nearest = std::max(nearest, p.z);
+  }
+  const glm::dvec2 distances = (most - least) / (2.0 * slope);
+  // All of a flat box that is seen from a low angle may be in sight from its nearest corner, where the eye must not be.
+  const double closest = nearest + std::max(second / size / 2, 1e-3);
+  const glm::dvec3 eye((most + least) * 0.5, std::max({distances.x, distances.y, closest}));
+  view.to_world = rigid(axes, centre + axes * (eye * size));
   return view;
 }
 

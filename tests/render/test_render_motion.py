@@ -3,7 +3,9 @@
 
 import numpy as np
 import pytest
+from glb import Glb
 from physics import box_of, inside, pixels
+from shapes import box
 
 SIZE = (96, 48)
 
@@ -147,13 +149,37 @@ def test_aspect_ratio_keeps_the_height(sheaf):
         check(sheaf.render("unlit", size=size).frame(), box_of(-1, 1, -1, 1), xmag=wide)
 
 
-def test_scene_without_camera_is_framed_whole(sheaf):
-    for size in ("64x32", "32x64"):
-        picture = sheaf.render("no_camera", size=size).frame()
-        rows, columns = np.nonzero(picture.alpha)
-        height, width = picture.alpha.shape
-        assert rows.min() > 0
-        assert rows.max() < height - 1
-        assert columns.min() > 0
-        assert columns.max() < width - 1
-        assert max(np.ptp(rows) / height, np.ptp(columns) / width) > 0.4
+def framed(pictures, least=0.9) -> None:
+    """What any of the pictures shows leaves 5 % of the width and height free on each side, and fills `least` of one."""
+    shown = np.logical_or.reduce([p.alpha > 0 for p in pictures])
+    used = []
+    for axis, size in enumerate(shown.shape):
+        places = np.nonzero(shown.any(axis=1 - axis))[0]
+        assert places.min() >= 0.05 * size - 1
+        assert places.max() + 1 <= 0.95 * size + 1
+        used.append((np.ptp(places) + 1) / size)
+    assert max(used) > least - 3 / max(shown.shape)
+
+
+SHAPES = ("128x72", "96x96", "72x128")
+
+
+@pytest.mark.parametrize("size", SHAPES)
+def test_scene_without_camera_is_framed_whole(sheaf, size):
+    framed([sheaf.render("no_camera", size=size).frame()])
+
+
+@pytest.mark.parametrize("size", SHAPES)
+def test_the_default_camera_holds_the_whole_animation(sheaf, tmp_path, size):
+    """A box jumps between two places and back, between keys that no even spacing finds; one frame alone is the same."""
+    glb = Glb()
+    node = glb.node("box", mesh=glb.mesh(glb.primitive(box((1, 1, 1)), glb.unlit("white", (1, 1, 1)))))
+    keys = [0, 0.501, 0.503, 0.505, 0.507, 1]
+    glb.animation("jump", [(node, "translation", keys, [(0, 0, 0)] * 2 + [(5, 4, -1)] * 2 + [(0, 0, 0)] * 2, "LINEAR")])
+    glb.scene([node])
+    scene = tmp_path / "scene.glb"
+    scene.write_bytes(glb.bytes())
+    run = sheaf.render(scene, "--fps", 250, "--frames", "0,126", size=size)  # 126 / 250 s = 0.504 s
+    framed([run.frame(0), run.frame(126)], 0.75)  # the box of both has corners where nothing is
+    alone = sheaf.render(scene, "--fps", 250, "--frames", "126", size=size)
+    assert alone.files[126].read_bytes() == run.files[126].read_bytes()
