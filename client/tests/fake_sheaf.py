@@ -19,23 +19,23 @@ import threading
 from pathlib import Path
 from typing import Any
 
-HELP = """render frames to OpenEXR
-Options:
-  -h,--help                   Print this help message and exit
-  --out TEXT REQUIRED         folder for the frames
-  --frames TEXT=0             A-B[:STEP] or N,M,...
-  --strategy TEXT=auto        auto, hybrid, crsh, rsh, bvh, reference
-  --sort TEXT=auto            auto, on or off
-  --spp UINT=1                samples a pixel
-"""
+OPTIONS: list[dict[str, Any]] = [
+    {"name": "out", "choices": None},
+    {"name": "frames", "choices": None},
+    {"name": "quality", "choices": ["draft", "production", "exact"]},
+    {"name": "strategy", "choices": ["auto", "hybrid", "crsh", "rsh", "bvh", "reference"]},
+    {"name": "sort", "choices": ["auto", "on", "off"]},
+    {"name": "spp", "choices": None},
+]
+QUALITIES = {"draft": (1, 2), "production": (4, 6), "exact": (16, 12)}  # samples and depth
 
 
 def main() -> None:
     if sys.argv[1:] == ["--version"]:
         print("sheaf 9.9.9")
         return
-    if sys.argv[1:] == ["render", "--help"]:
-        print(HELP)
+    if sys.argv[1:] == ["options", "--json"]:
+        print(json.dumps(OPTIONS))
         return
     scene, options = Path(sys.argv[2]), parsed(sys.argv[3:])
     if not scene.is_file():

@@ -47,7 +47,7 @@ class Engine(Program):
         return Outcome(0, 0.1)
 
 
-ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}))
+ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}), ("draft", "production", "exact"))
 
 
 def found(options: StudyOptions = SMALL, scene: str = "report-moving.glb", **more: Any) -> dict[str, Any]:

@@ -4,13 +4,15 @@
 
 #include <string>
 
-#include "cli/options.hpp"
+#include "output/progress.hpp"
+#include "settings/render_settings.hpp"
 
 namespace sheaf {
 
 int run_render(RenderOptions& options, Progress& progress);
 int run_inspect(const std::string& scene, const std::string& scene_name, bool json);
 int run_devices(bool json);
+int run_options(bool json);
 
 /// Signals that ask to stop: 0, or the signal's number. Whole frames stay, the one at work is dropped.
 [[nodiscard]] int interrupted();

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "core/error.hpp"
 #include "core/quote.hpp"
 
@@ -40,17 +41,18 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
                "sheaf"};
   app.set_version_flag("--version", std::string("sheaf ") + SHEAF_VERSION);
   app.require_subcommand(1);
-  sheaf::RenderOptions options;
   auto* render = app.add_subcommand("render", "render frames to OpenEXR");
-  sheaf::add_render_options(*render, options);
+  const sheaf::RenderLine line(*render);
   std::string scene, scene_name;
-  bool inspect_json = false, devices_json = false;
+  bool inspect_json = false, devices_json = false, options_json = false;
   auto* inspect = app.add_subcommand("inspect", "what a scene holds, what it needs, what will be left out and why");
   inspect->add_option("scene", scene, "a .glb or .gltf file")->required();
   inspect->add_option("--scene-name", scene_name, "which glTF scene: name or index");
   inspect->add_flag("--json", inspect_json);
   auto* devices = app.add_subcommand("devices", "Vulkan devices and what each can do");
   devices->add_flag("--json", devices_json);
+  auto* settings = app.add_subcommand("options", "every setting of render: its type, range, choices, default and unit");
+  settings->add_flag("--json", options_json);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -59,9 +61,10 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
                   shown(error.what(), argc, argv) + " (see sheaf --help)");
   }
   if (devices->parsed()) return sheaf::run_devices(devices_json);
+  if (settings->parsed()) return sheaf::run_options(options_json);
   if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, inspect_json);
-  progress = std::make_unique<sheaf::Progress>(sheaf::parse_progress(options.progress));
-  sheaf::resolve_options(options);
+  progress = std::make_unique<sheaf::Progress>(line.progress());
+  sheaf::RenderOptions options = line.options();
   return sheaf::run_render(options, *progress);
 }
 

@@ -98,12 +98,12 @@ void Job::write(RenderedFrame frame, const FrameRequest& request) {
   const auto begun = Clock::now();
   const auto path = (fs::path(options_.out) / names_.frame(number)).string();
   const auto attributes =
-      frame_attributes(scene_, options_.settings, request.camera, number, request.time_s, fps_, stats_.strategy);
+      frame_attributes(scene_, options_, request.camera, number, request.time_s, fps_, stats_.strategy);
   if (options_.preview) {
     const auto preview = (fs::path(options_.out) / names_.preview(number)).string();
     write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
   }
-  write_exr(path, frame.layers, attributes, parse_compression(options_.compression));
+  write_exr(path, frame.layers, attributes, options_.compression);
   frame.stats.stages_ms.emplace_back("write", milliseconds_since(begun));
   progress_.frame_done(number, path, frame.stats.wall_ms);
   stats_.frames.push_back(std::move(frame.stats));

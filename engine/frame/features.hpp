@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "frame/settings.hpp"
+#include "settings/render_settings.hpp"
 #include "output/stats.hpp"
 #include "scene/scene.hpp"
 

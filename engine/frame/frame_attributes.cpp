@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "frame/frame_attributes.hpp"
 
-#include <cmath>
+#include "settings/setting.hpp"
 
 namespace sheaf {
 namespace {
@@ -24,38 +24,16 @@ glm::dmat4 world_to_ndc(const CameraView& camera, double aspect) {
 
 }  // namespace
 
-nlohmann::ordered_json settings_json(const RenderSettings& s) {
-  nlohmann::ordered_json json{{"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
-                              {"spp", s.samples.most},
-                              {"filter", name_of(s.filter)},
-                              {"depth", s.depth},
-                              {"cutoff", s.cutoff},
-                              {"primary", s.primary == PrimaryMethod::raster  ? "raster"
-                                          : s.primary == PrimaryMethod::trace ? "trace"
-                                                                              : "auto"},
-                              {"opaque", s.opaque}};
-  if (s.layers.depth) {  // JSON has no infinity
-    if (std::isinf(s.z_background))
-      json["z_background"] = s.z_background > 0 ? "inf" : "-inf";
-    else
-      json["z_background"] = s.z_background;
-  }
-  if (s.transparent_glass) json["glass-alpha"] = "transparent";
-  if (s.samples.error) json["spp"] = text_of(s.samples);
-  if (s.environment) json["environment"] = {s.environment->x, s.environment->y, s.environment->z};
-  return json;
-}
-
-FrameAttributes frame_attributes(const Scene& scene, const RenderSettings& settings, const CameraView& camera,
+FrameAttributes frame_attributes(const Scene& scene, const RenderOptions& options, const CameraView& camera,
                                  std::int64_t frame, double time_s, double fps, const std::string& strategy) {
   FrameAttributes a;
   a.world_to_camera = glm::inverse(camera.to_world);
-  a.world_to_ndc = world_to_ndc(camera, static_cast<double>(settings.width) / settings.height);
+  a.world_to_ndc = world_to_ndc(camera, static_cast<double>(options.settings.width) / options.settings.height);
   a.fps = fps;
   a.frame = frame;
   a.time_s = time_s;
   a.scene_sha256 = scene.sha256;
-  a.settings_json = settings_json(settings).dump();
+  a.settings_json = settings_json(options).dump();
   a.strategy = strategy;
   a.version = SHEAF_VERSION;
   return a;

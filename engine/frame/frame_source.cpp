@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "frame/auto_strategy.hpp"
-#include "frame/frame_attributes.hpp"
 #include "frame/reference_frames.hpp"
+#include "settings/setting.hpp"
 
 namespace sheaf {
 namespace {
@@ -43,9 +43,9 @@ class DeviceFrames final : public FrameSource {
   std::optional<RenderedFrame> kept_;
 };
 
-void describe(const Scene& scene, const Features& features, const RenderSettings& settings, RunStats& stats) {
+void describe(const Scene& scene, const Features& features, const RenderOptions& options, RunStats& stats) {
   stats.version = SHEAF_VERSION;
-  stats.settings = settings_json(settings);
+  stats.settings = settings_json(options);
   stats.scene.meshes = scene.meshes.size();
   stats.scene.materials = scene.materials.size();
   stats.scene.lights = features.default_light ? 0 : features.lights;
@@ -61,7 +61,7 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
                                                const FrameRequest& first, RunStats& stats) {
   const RenderSettings& settings = options.settings;
   const Features features = find_features(scene, animations, settings, camera_moves);
-  describe(scene, features, settings, stats);
+  describe(scene, features, options, stats);
   if (settings.strategy == Strategy::reference) {
     stats.device_name = "CPU, double precision";
     stats.driver = "sheaf reference " SHEAF_VERSION;

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "cli/options.hpp"
 #include "frame/renderer.hpp"
+#include "settings/render_settings.hpp"
 
 namespace sheaf {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frame/settings.hpp"
+#include "settings/render_settings.hpp"
 #include "scene/scene.hpp"
 
 namespace sheaf {

@@ -21,30 +21,13 @@
 #include <span>
 
 #include "core/error.hpp"
-#include "core/quote.hpp"
 #include "output/atomic_file.hpp"
 
 namespace sheaf {
 namespace {
 
-struct CompressionName {
-  Compression compression;
-  const char* name;
-  Imf::Compression imf;
-};
-constexpr std::array compressions{
-    CompressionName{Compression::none, "none", Imf::NO_COMPRESSION},
-    CompressionName{Compression::rle, "rle", Imf::RLE_COMPRESSION},
-    CompressionName{Compression::zips, "zips", Imf::ZIPS_COMPRESSION},
-    CompressionName{Compression::zip, "zip", Imf::ZIP_COMPRESSION},
-    CompressionName{Compression::piz, "piz", Imf::PIZ_COMPRESSION},
-    CompressionName{Compression::dwaa, "dwaa", Imf::DWAA_COMPRESSION},
-};
-
-const CompressionName& entry_of(Compression compression) {
-  return *std::find_if(compressions.begin(), compressions.end(),
-                       [&](const CompressionName& entry) { return entry.compression == compression; });
-}
+constexpr std::array imf_compressions{Imf::NO_COMPRESSION,  Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                      Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION};
 
 class AtomicStream : public Imf::OStream {
  public:
@@ -126,11 +109,11 @@ void check_sizes(const FrameLayers& layers) {
 }
 
 void check_conflict(const FrameLayers& layers, Compression compression) {
-  std::vector<std::string> aovs;
-  if (!layers.normal.empty()) aovs.emplace_back("N");
-  if (!layers.position.empty()) aovs.emplace_back("P");
-  if (!layers.uv.empty()) aovs.emplace_back("UV");
-  const std::string conflict = compression_conflict(compression, aovs);
+  LayerSet data;
+  data.normal = !layers.normal.empty();
+  data.position = !layers.position.empty();
+  data.uv = !layers.uv.empty();
+  const std::string conflict = compression_conflict(compression, data);
   if (!conflict.empty()) throw Error(ErrorKind::usage, conflict);
 }
 
@@ -183,32 +166,12 @@ void add_attributes(Imf::Header& header, const FrameAttributes& attributes) {
 
 }  // namespace
 
-Compression parse_compression(const std::string& name) {
-  std::string allowed;
-  for (const CompressionName& entry : compressions) {
-    if (name == entry.name) return entry.compression;
-    allowed += std::string(allowed.empty() ? "" : ", ") + entry.name;
-  }
-  throw Error(ErrorKind::usage, "--compression " + in_quotes(name) + ": not one of " + allowed);
-}
-
-const char* name_of(Compression compression) { return entry_of(compression).name; }
-
-std::string compression_conflict(Compression compression, const std::vector<std::string>& aovs) {
-  if (compression != Compression::dwaa) return {};
-  for (const char* data : {"N", "P", "UV"})
-    if (std::find(aovs.begin(), aovs.end(), data) != aovs.end())
-      return std::string("--compression dwaa: would store ") + data + ".Y of --aov " + data +
-             " with loss, as if it were luminance; use zip or piz";
-  return {};
-}
-
 void write_exr(const std::string& path, const FrameLayers& layers, const FrameAttributes& attributes,
                Compression compression) {
   check_sizes(layers);
   check_conflict(layers, compression);
   Imf::Header header(static_cast<int>(layers.width), static_cast<int>(layers.height));
-  header.compression() = entry_of(compression).imf;
+  header.compression() = imf_compressions.at(static_cast<std::size_t>(compression));
   add_attributes(header, attributes);
   const Channels channels(layers, header);
 

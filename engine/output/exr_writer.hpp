@@ -7,13 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "output/compression.hpp"
+
 namespace sheaf {
-
-enum class Compression { none, rle, zips, zip, piz, dwaa };
-
-/// Throws Error{usage} naming the allowed ones.
-[[nodiscard]] Compression parse_compression(const std::string& name);
-[[nodiscard]] const char* name_of(Compression compression);
 
 /// Width × height pixels, row 0 at the top. An empty vector is a layer that is left out of the file.
 /// Half channels are clamped to ±65504 and NaN becomes 0 there; float channels are written as they are.
@@ -43,10 +39,6 @@ struct FrameAttributes {
   double time_s = 0;
   std::string scene_sha256, settings_json, strategy, version;
 };
-
-/// DWAA tells colour from data by a channel's last letter, and would put P.Y, N.Y and UV.Y through its lossy transform.
-/// Given the `--aov` names, says why they cannot go with this compression; empty where they can.
-[[nodiscard]] std::string compression_conflict(Compression compression, const std::vector<std::string>& aovs);
 
 /// Throws Error{io} with the path and the reason. Layers whose size is not width × height, attributes that OpenEXR
 /// cannot hold, and a compression_conflict are Error{usage}.

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/quote.hpp"
 
 namespace sheaf {
 namespace {
@@ -36,14 +35,6 @@ std::string clock_text(double seconds) {
 }
 
 }  // namespace
-
-ProgressMode parse_progress(const std::string& name) {
-  if (name == "auto") return ProgressMode::automatic;
-  if (name == "bar") return ProgressMode::bar;
-  if (name == "json") return ProgressMode::json;
-  if (name == "none") return ProgressMode::none;
-  throw Error(ErrorKind::usage, "--progress " + in_quotes(name) + ": not one of auto, bar, json, none");
-}
 
 Progress::Progress(ProgressMode mode, std::FILE* json, std::FILE* text)
     : mode_(resolved(mode, text)), json_(json), text_(text) {}

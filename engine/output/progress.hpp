@@ -2,6 +2,7 @@
 // What `--progress` shows while frames are rendered.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -13,9 +14,7 @@
 namespace sheaf {
 
 enum class ProgressMode { automatic, bar, json, none };
-
-/// "auto", "bar", "json" or "none"; Error{usage} otherwise.
-[[nodiscard]] ProgressMode parse_progress(const std::string& name);
+constexpr auto choice_names(ProgressMode) { return std::array{"auto", "bar", "json", "none"}; }
 
 /// Bar: percent, frames and time left, on `text`. Json: one object a line on `json`, flushed. Automatic: a bar if
 /// `text` is a terminal, else none. Warnings and errors are shown in every mode: as JSON events, else as lines on

@@ -4,6 +4,7 @@
 // the plain mean of its own samples and no picture depends on how it is cut into tiles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -15,6 +16,7 @@ enum class PixelFilter : std::uint32_t {
   triangle,  // radius 1
   gaussian,  // standard deviation 0.5, cut at 1.5 and lowered to be 0 there
 };
+constexpr auto choice_names(PixelFilter) { return std::array{"box", "triangle", "gaussian"}; }
 
 /// Point i of the sequence in [0, 1)². Every run of 2^k points that begins at a multiple of 2^k is a (0, k, 2)-net:
 /// it has one point in each of the 2^k boxes of size 2^-j × 2^(j-k), for every j.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace sheaf::server {
 
@@ -25,5 +27,25 @@ struct Limits {
   std::uint64_t queued_jobs = 1000;
   std::uint64_t log_bytes = std::uint64_t{4} << 20;  // kept of a worker's log
 };
+
+/// Limits of what a job's settings may ask for, by the names that the engine's table of settings has for them.
+struct SettingLimit {
+  const char* name;
+  std::uint64_t Limits::*value;
+  const char* of;
+};
+inline constexpr std::array<SettingLimit, 5> setting_limits{
+    {{"max-frames", &Limits::frames, "frames of a job"},
+     {"max-pixels", &Limits::pixels, "pixels of a frame"},
+     {"max-spp", &Limits::spp, "samples per pixel"},
+     {"max-depth", &Limits::depth, "generations of reflection and refraction"},
+     {"max-memory", &Limits::memory_mib, "MiB of a job's memory budget"}}};
+
+/// Null where the setting has none.
+[[nodiscard]] constexpr const SettingLimit* find_limit(const char* name) {
+  for (const SettingLimit& limit : setting_limits)
+    if (name != nullptr && std::string_view(name) == limit.name) return &limit;
+  return nullptr;
+}
 
 }  // namespace sheaf::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The settings part of a submission: the command line's long names, checked here so that a mistake is answered at
-// once, and turned into the worker's arguments. Nothing that names a path on this machine is accepted.
+// The settings part of a submission: those of the engine's table that HTTP takes, checked here so that a mistake is
+// answered at once, and turned into the worker's arguments. Nothing that names a path on this machine is accepted.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,10 @@ namespace sheaf::server {
 struct Settings {
   nlohmann::ordered_json resolved;                  // as the worker is told, with the service's own defaults
   std::vector<std::string> arguments;               // "--size=640x360"
-  std::optional<std::vector<std::int64_t>> frames;  // where the client named them
-  bool preview = true;
+  std::optional<std::vector<std::int64_t>> frames;  // where the client named them, in order
 };
 
 /// `has_camera`: a camera path was uploaded. Throws Problem: 422 naming the key and the reason.
 [[nodiscard]] Settings parse_settings(const nlohmann::json& given, bool has_camera, const Limits& limits);
-
-/// Every key that is accepted.
-[[nodiscard]] std::vector<std::string> setting_names();
 
 }  // namespace sheaf::server

@@ -20,11 +20,7 @@ nlohmann::ordered_json limit_table(const ServiceOptions& options) {
   add("max-zip-ratio", limits.zip_ratio, "unpacked to packed size", upload);
 
   constexpr const char* job = "422 limit-exceeded";
-  add("max-frames", limits.frames, "frames of a job", job);
-  add("max-pixels", limits.pixels, "pixels of a frame", job);
-  add("max-spp", limits.spp, "samples a pixel", job);
-  add("max-depth", limits.depth, "depth of reflection and refraction", job);
-  add("max-memory", limits.memory_mib, "MiB of a job's memory budget", job);
+  for (const SettingLimit& limit : setting_limits) add(limit.name, limits.*limit.value, limit.of, job);
   if (limits.triangles > 0) add("max-triangles", limits.triangles, "triangles of a scene, instances counted", job);
   if (limits.texture_bytes > 0) add("max-textures", limits.texture_bytes, "bytes of a scene's decoded images", job);
   add("max-inspect", limits.inspect_seconds, "seconds for loading a scene", job);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "http/problem.hpp"
-#include "routes/limit_table.hpp"
+#include "routes/contract.hpp"
 #include "routes/resources.hpp"
 #include "routes/routes.hpp"
 
@@ -30,13 +30,6 @@ Reply metrics(RouteContext& context, Request&) {
                                                            context.device.result().ready, context.confinement}));
 }
 
-/// The contract with the limits of this very service in it.
-std::string contract_of(const ServiceOptions& options) {
-  auto contract = nlohmann::ordered_json::parse(openapi_json);
-  contract["x-limits"] = limit_table(options);
-  return contract.dump(2);
-}
-
 Reply report(RouteContext& context, Request&) {
   if (context.report.empty()) throw Problem(ProblemKind::not_produced, "the service was given no report");
   return text_reply("application/json", read_text(context.report, most_report));
@@ -61,7 +54,7 @@ void add_service_routes(Router& router, RouteContext& context) {
   get("/healthz", health);
   get("/readyz", readiness);
   get("/metrics", metrics);
-  router.add("GET", "/openapi.json", [text = contract_of(context.service.options())](Request& request) {
+  router.add("GET", "/openapi.json", [text = contract_of(context.service.options()).dump(2)](Request& request) {
     request.allow_arguments({});
     return text_reply("application/json", text);
   });

@@ -114,14 +114,5 @@ TEST_F(ProgressTest, LinesFromSeveralThreadsDoNotMix) {
   for (std::size_t i = 1; i <= 400; ++i) EXPECT_EQ(all[i]["done"], i);
 }
 
-TEST(ParseProgress, Names) {
-  EXPECT_EQ(parse_progress("auto"), ProgressMode::automatic);
-  EXPECT_EQ(parse_progress("bar"), ProgressMode::bar);
-  EXPECT_EQ(parse_progress("json"), ProgressMode::json);
-  EXPECT_EQ(parse_progress("none"), ProgressMode::none);
-  EXPECT_EQ(test::error_of(ErrorKind::usage, [] { (void)parse_progress("fancy"); }),
-            "--progress \"fancy\": not one of auto, bar, json, none");
-}
-
 }  // namespace
 }  // namespace sheaf

@@ -11,8 +11,9 @@
 #include "jobs/outcome.hpp"
 #include "jobs/settings.hpp"
 #include "jobs/worker_events.hpp"
-#include "routes/resources.hpp"
+#include "routes/contract.hpp"
 #include "service.hpp"
+#include "settings/setting.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -132,12 +133,13 @@ TEST(WorkerEvents, AreTakenOnlyWhereTheyAreWhole) {
 }
 
 TEST(Contract, NamesEverySettingAndEveryRoute) {
-  const auto contract = nlohmann::json::parse(openapi_json);
-  std::set<std::string> described;
+  const nlohmann::json contract = contract_of({});
+  std::set<std::string> described, taken;
   for (const auto& [name, schema] : contract.at("components").at("schemas").at("Settings").at("properties").items())
     described.insert(name);
-  const auto names = setting_names();
-  EXPECT_EQ(described, std::set<std::string>(names.begin(), names.end()));
+  for (const Setting& setting : settings_table())
+    if (setting.http) taken.insert(setting.name);
+  EXPECT_EQ(described, taken);
 
   ProgramOptions options;
   options.service.runner.sheaf = "/bin/true";
@@ -156,7 +158,7 @@ TEST(Contract, NamesEverySettingAndEveryRoute) {
 
 TEST(Settings, RatesMayBeRatios) {
   const Settings settings = parse_settings({{"fps", "24000/1001"}}, false, Limits{});
-  EXPECT_EQ(settings.arguments.front(), "--fps=23.976023976023978");
+  EXPECT_EQ(settings.arguments.front(), "--fps=24000/1001");
   EXPECT_EQ(settings.resolved["fps"], "24000/1001");
 }
 

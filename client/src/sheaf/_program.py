@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -18,7 +18,7 @@ from pathlib import Path
 from ._errors import RenderError, SheafError
 
 PROBE_SECONDS = 30.0
-"""What `--version` and `--help` may take; they touch no device."""
+"""What `--version` and `options` may take; they touch no device."""
 
 _LAST_LINES = 5
 
@@ -58,12 +58,14 @@ class Program:
         version: what `--version` says.
         strategies: those that its `--strategy` names.
         options: the long options of `sheaf render`, without the dashes.
+        qualities: those that its `--quality` names.
     """
 
     path: Path
     version: str
     strategies: tuple[str, ...]
     options: frozenset[str]
+    qualities: tuple[str, ...] = ()
 
     def render(
         self,
@@ -89,7 +91,7 @@ def find_program(given: str | os.PathLike[str] | None = None) -> Program:
     if path is None:
         raise SheafError("no program `sheaf` beside this one nor on PATH: name it with --sheaf")
     said = []
-    for arguments in (["--version"], ["render", "--help"]):
+    for arguments in (["--version"], ["options", "--json"]):
         try:
             told = subprocess.run(  # noqa: S603 - the program that the user named
                 [path, *arguments], capture_output=True, text=True, timeout=PROBE_SECONDS, check=True
@@ -97,11 +99,14 @@ def find_program(given: str | os.PathLike[str] | None = None) -> Program:
         except (OSError, subprocess.SubprocessError) as error:
             raise SheafError(f"{path}: it is no `sheaf` that runs here ({error})") from error
         said.append(told.stdout)
-    version, text = said
-    named = re.search(r"--strategy\b(.*?)\n\s*-", text, re.DOTALL)
-    strategies = re.findall(r"\b[a-z]+\b", named.group(1).partition("=auto")[2]) if named else []
-    options = frozenset(re.findall(r"^\s*(?:-\w,)?--([a-z-]+)", text, re.MULTILINE))
-    return Program(path, version.strip(), tuple(strategies), options)
+    version, table = said
+    try:
+        choices = {setting["name"]: tuple(setting["choices"] or ()) for setting in json.loads(table)}
+    except (ValueError, TypeError, KeyError) as error:
+        raise SheafError(f"{path}: what its options are is no table of settings ({error!r})") from error
+    return Program(
+        path, version.strip(), choices.get("strategy", ()), frozenset(choices), choices.get("quality", ())
+    )
 
 
 def option_list(settings: Mapping[str, object]) -> list[str]:

@@ -5,74 +5,16 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal, TypedDict
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from ._frames import frame_list
+from ._render_settings import SETTINGS, RenderSettings
 
-Strategy = Literal["auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"]
-Switch = Literal["auto", "on", "off"]
-Quality = Literal["draft", "production", "exact"]
-Filter = Literal["box", "triangle", "gaussian"]
-Primary = Literal["auto", "raster", "trace"]
-Compression = Literal["none", "rle", "zips", "zip", "piz", "dwaa"]
+__all__ = ["RenderSettings", "Wire", "wire_settings"]
 
-
-class RenderSettings(TypedDict, total=False):
-    """What `Client.submit` takes beside scene and camera; what is not given is the service's default.
-
-    `None` counts as not given. The service checks all values and answers `InvalidRequest` with the reason.
-    """
-
-    frames: str | int | Iterable[int] | None
-    """Absolute frame numbers: `"0-99"`, `"0-99:2,200"`, `17`, `range(100)`; frame f shows f / fps seconds."""
-    fps: float | str | None
-    """Frames a second, or a fraction such as "24000/1001"."""
-    animation: str | int | None
-    """The animation's name or index, or "all"."""
-    scene_name: str | int | None
-    """Which of the file's scenes, by name or index; the file's own default where not given."""
-    camera_node: str | int | None
-    """A camera of the scene by node name or index; not together with a camera path."""
-    size: str | tuple[int, int] | None
-    """Width and height in pixels: `"640x360"` or `(640, 360)`."""
-    quality: Quality | None
-    """Named settings for samples, depth and cutoff; what is given beside it counts."""
-    spp: int | str | None
-    """Samples a pixel, or `"adaptive:ERROR"` or `"adaptive:ERROR:MOST"`: more where the error is."""
-    filter: Filter | None
-    """How samples make up a pixel."""
-    depth: int | None
-    """Generations of reflected and refracted rays."""
-    cutoff: float | None
-    """Rays whose weight is below this are not followed."""
-    strategy: Strategy | None
-    """How rays find triangles; never changes a pixel."""
-    sort: Switch | None
-    """Whether rays are sorted by hash."""
-    primary: Primary | None
-    """How primary hits are found."""
-    aov: str | Sequence[str] | None
-    """Extra layers: Z, N, P, albedo, UV, motion, id, tests, ..."""
-    compression: Compression | None
-    """EXR compression."""
-    memory: int | None
-    """Device memory budget, MiB."""
-    device: str | int | None
-    """Device by name or index, where the service lets callers choose."""
-    environment: str | tuple[float, float, float] | None
-    """Radiance that rays see where they hit nothing: `"R,G,B"` or three numbers."""
-    count: Switch | None
-    """Whether intersection tests are counted."""
-    opaque: bool | None
-    """Every surface opaque and two-sided."""
-    preview: bool | None
-    """A tone-mapped PNG beside each frame; the service makes them unless told not to."""
-    name: str | None
-    """File names with #### for the frame number, in `Job.download` and in the service's zip."""
-
-
-_NAMES = frozenset(RenderSettings.__annotations__)
+_NAMES = frozenset(name.replace("-", "_") for name in SETTINGS)
+_LISTS = {"color": ",", "layers": ",", "size": "x"}
 
 Wire = str | int | float | bool
 """A setting's value in the request's JSON."""
@@ -92,15 +34,16 @@ def wire_settings(settings: Mapping[str, Any]) -> dict[str, Wire]:
 
 
 def _wire(name: str, value: Any) -> Wire:
-    if name == "frames":
+    kind = SETTINGS[name.replace("_", "-")].kind
+    if kind == "frames":
         return frame_list(value)
-    if name == "size" and not isinstance(value, str):
+    if kind == "size" and not isinstance(value, str):
         return _size(value)
-    if name in ("aov", "environment") and isinstance(value, Iterable) and not isinstance(value, str):
-        return ",".join(str(_finite(name, item)) for item in value)
-    if name in ("fps", "spp") and isinstance(value, str):
+    if kind in _LISTS and isinstance(value, Iterable) and not isinstance(value, str):
+        return _LISTS[kind].join(str(_finite(name, item)) for item in value)
+    if kind in ("rate", "samples") and isinstance(value, str):
         value = _number(value)
-    if isinstance(value, str) or (isinstance(value, (int, float)) and name not in ("aov", "environment")):
+    if isinstance(value, str) or (isinstance(value, (int, float)) and kind not in _LISTS):
         return _finite(name, value)
     raise TypeError(f"{name} cannot be a {type(value).__name__}")
 

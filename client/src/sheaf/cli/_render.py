@@ -9,7 +9,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 from shlex import quote
-from typing import Any, get_args
+from typing import Any
 
 from .._errors import FrameError, JobError
 from .._exr import read_exr
@@ -17,22 +17,15 @@ from .._files import write_whole
 from .._frames import frame_list, parse_frames
 from .._job import Job
 from .._names import FrameNames, default_pattern
-from .._settings import Compression, Filter, Primary, Quality, Strategy, Switch
+from .._render_settings import SETTINGS, Setting
 from ._connect import add_output, add_server, checked_name, connect
 from ._exit import UsageError
 from ._report import Report
 
-_NUMBERS = {"fps": str, "spp": str, "depth": int, "cutoff": float, "memory": int}
-_TEXTS = ("animation", "scene_name", "camera_node", "environment", "size", "aov", "device")
-_CHOICES = {
-    "quality": Quality,
-    "filter": Filter,
-    "strategy": Strategy,
-    "sort": Switch,
-    "count": Switch,
-    "primary": Primary,
-    "compression": Compression,
-}
+# Of the settings, those that the command has options of its own for (see add_output).
+_OWN = ("frames", "name", "preview")
+_PLAIN = {name: setting for name, setting in SETTINGS.items() if name not in _OWN}
+_NUMBERS = {"integer": int, "number": float}
 
 
 def add(commands: Any) -> None:
@@ -55,21 +48,29 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     """Adds the settings of `sheaf render`, the camera path and the frames."""
     settings = parser.add_argument_group("settings, as of `sheaf render`; what is not given is the renderer's default")
     settings.add_argument("--camera", metavar="PATH.json", help="camera path")
-    settings.add_argument("--frames", help="A-B[:STEP], N,M,...")
-    for name, kind in _NUMBERS.items():
-        settings.add_argument(f"--{name}", type=kind)
-    for name in _TEXTS:
-        settings.add_argument(f"--{name.replace('_', '-')}")
-    for name, choices in _CHOICES.items():
-        settings.add_argument(f"--{name}", choices=get_args(choices))
-    settings.add_argument("--opaque", action="store_true", default=None)
+    settings.add_argument("--frames", metavar=SETTINGS["frames"].syntax, help=SETTINGS["frames"].help)
+    for name, setting in _PLAIN.items():
+        _add_setting(settings, name, setting)
+
+
+def _add_setting(group: Any, name: str, setting: Setting) -> None:
+    text = setting.help.replace("%", "%%")
+    if setting.kind == "flag":
+        group.add_argument(f"--{name}", action="store_true", default=None, help=text)
+    elif setting.kind == "choice":
+        group.add_argument(f"--{name}", choices=setting.choices, help=text)
+    else:
+        listed = f": {', '.join(setting.choices)}" if setting.choices else ""
+        kind = _NUMBERS.get(setting.kind, str)
+        group.add_argument(f"--{name}", metavar=setting.syntax, type=kind, help=text + listed)
 
 
 def settings_of(arguments: argparse.Namespace) -> dict[str, Any]:
     """What was given of them, the camera path and the frames apart."""
     if arguments.camera and arguments.camera_node:
         raise UsageError("--camera and --camera-node exclude each other")
-    return {name: getattr(arguments, name) for name in (*_NUMBERS, *_TEXTS, *_CHOICES, "opaque")}
+    names = [name.replace("-", "_") for name in _PLAIN]
+    return {name: getattr(arguments, name) for name in names}
 
 
 def run(arguments: argparse.Namespace, report: Report) -> None:

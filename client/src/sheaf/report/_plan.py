@@ -11,12 +11,6 @@ from .._program import Program
 
 Settings = Mapping[str, object]
 
-# What an engine without --quality would mean by them.
-_QUALITIES: dict[str, Settings] = {
-    "draft": {"spp": 1, "depth": 2, "cutoff": 0.02},
-    "production": {"spp": 4, "depth": 6, "cutoff": 0.002},
-    "exact": {"spp": 16, "depth": 12, "cutoff": 0},
-}
 # Each with what it takes away from the whole algorithm.
 _PUBLISHED: tuple[Settings, ...] = (
     {"strategy": "bvh"},
@@ -116,10 +110,7 @@ def memory_points(options: StudyOptions, strategy: str) -> list[Point]:
 
 def error_points(program: Program, options: StudyOptions, strategy: str) -> list[Point]:
     """The knobs that trade error for time, under the strategy that is fastest here."""
-    if "quality" in program.options:
-        named = [Point({"strategy": strategy, "quality": name}, name) for name in _QUALITIES]
-    else:
-        named = [Point({"strategy": strategy, **settings}, name) for name, settings in _QUALITIES.items()]
+    named = [Point({"strategy": strategy, "quality": name}, name) for name in program.qualities]
     middle = options.depth[len(options.depth) // 2]
     sweeps: list[Settings] = [{"spp": spp, "depth": middle} for spp in options.spp]
     most = options.spp[len(options.spp) // 2]

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "sampling/quality.hpp"
+#include "sampling/sample_count.hpp"
 
-#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <sstream>
 
 namespace sheaf {
@@ -12,7 +12,11 @@ template <typename Number>
 bool parse_whole(std::string_view text, Number& number) {
   const char* const end = text.data() + text.size();
   const auto [at, failed] = std::from_chars(text.data(), end, number);
-  return failed == std::errc() && at == end;
+  if (failed == std::errc::result_out_of_range && std::numeric_limits<Number>::is_integer)
+    number = std::numeric_limits<Number>::max();
+  else if (failed != std::errc())
+    return false;
+  return at == end;
 }
 
 }  // namespace
@@ -36,11 +40,6 @@ std::string text_of(const SampleCount& samples) {
   if (samples.error) text << "adaptive:" << *samples.error << ":";
   text << samples.most;
   return text.str();
-}
-
-const Quality* find_quality(std::string_view name) {
-  const auto found = std::ranges::find_if(qualities, [&](const Quality& q) { return name == q.name; });
-  return found == qualities.end() ? nullptr : &*found;
 }
 
 }  // namespace sheaf

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// The settings of `sheaf render` as values. Fields, defaults and all that is told of them stand in table.def.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "output/compression.hpp"
+#include "output/progress.hpp"
+#include "sampling/pixel_samples.hpp"
+#include "settings/presets.hpp"
+#include "settings/values.hpp"
+
+namespace sheaf {
+
+enum class Strategy { automatic, hybrid, crsh, rsh, frustum, classify, bvh, brute, rayquery, reference };
+constexpr auto choice_names(Strategy) {
+  return std::array{"auto", "hybrid", "crsh", "rsh", "frustum", "classify", "bvh", "brute", "rayquery", "reference"};
+}
+
+enum class SortPolicy { automatic, on, off };
+constexpr auto choice_names(SortPolicy) { return std::array{"auto", "on", "off"}; }
+
+enum class CountPolicy { automatic, on, off };
+constexpr auto choice_names(CountPolicy) { return std::array{"auto", "on", "off"}; }
+
+enum class PrimaryMethod { automatic, raster, trace };
+constexpr auto choice_names(PrimaryMethod) { return std::array{"auto", "raster", "trace"}; }
+
+enum class InstancePolicy { automatic, copied, shared };
+constexpr auto choice_names(InstancePolicy) { return std::array{"auto", "copied", "shared"}; }
+
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): the same entries make fields here and the table in table.cpp
+#define PRESET(...)
+#define SETTING(...)
+
+/// What the renderer is told, beside scene and camera.
+struct RenderSettings : ImageSize {
+#define PICTURE(type, member, fallback, ...) type member = fallback;
+#define RUN(...)
+#include "settings/table.def"
+#undef PICTURE
+#undef RUN
+  std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame
+  bool counted = true;              // whether tests are counted; what --count, --stats and --aov come to
+};
+
+/// Everything that the command line says.
+struct RenderOptions {
+  std::string scene;
+  RenderSettings settings;
+#define PICTURE(...)
+#define RUN(type, member, fallback, ...) type member = fallback;
+#include "settings/table.def"
+#undef PICTURE
+#undef RUN
+};
+
+#undef PRESET
+#undef SETTING
+// NOLINTEND(cppcoreguidelines-macro-usage)
+
+}  // namespace sheaf
