@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Enumerations whose values have names. Beside the enumeration E stands `constexpr auto choice_names(E)`: an array of the
-// names in the order of the values, which count from 0.
+// Enumerations whose values have names. Beside the enumeration E stands `constexpr auto choice_names(E)`: an array of
+// the names in the order of the values, which count from 0.
 #pragma once
 
 #include <array>
@@ -12,7 +12,9 @@
 namespace sheaf {
 
 template <typename E>
-concept NamedEnum = std::is_enum_v<E> && requires(E value) { choice_names(value).size(); };
+concept NamedEnum = std::is_enum_v<E> && requires(E value) {
+  choice_names(value).size();
+};
 
 template <NamedEnum E>
 inline constexpr auto choices_of = choice_names(E{});

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "settings/render_settings.hpp"
 #include "output/stats.hpp"
 #include "scene/scene.hpp"
+#include "settings/render_settings.hpp"
 
 namespace sheaf {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "settings/render_settings.hpp"
 #include "scene/scene.hpp"
+#include "settings/render_settings.hpp"
 
 namespace sheaf {
 

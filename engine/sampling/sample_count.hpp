@@ -14,8 +14,8 @@ struct SampleCount {
   std::optional<double> error;  // adaptive: see AdaptivePixels
 };
 
-/// "N", or "adaptive:ERROR" with an optional ":MOST"; nothing where it is neither. A number of samples that is too large
-/// for its type becomes the largest. Ranges are the caller's matter.
+/// "N", or "adaptive:ERROR" with an optional ":MOST"; nothing where it is neither. A number of samples that is too
+/// large for its type becomes the largest. Ranges are the caller's matter.
 [[nodiscard]] std::optional<SampleCount> parse_sample_count(std::string_view text);
 [[nodiscard]] std::string text_of(const SampleCount& samples);
 

@@ -45,8 +45,7 @@ void read_setting(const Given& given, RenderOptions& options) {
 
 std::optional<Conflict> find_conflict(const RenderOptions& options) {
   if (!options.camera.empty() && !options.camera_node.empty())
-    return Conflict{find_setting("camera-node"),
-                    "--camera and --camera-node: only one of them can choose the camera"};
+    return Conflict{find_setting("camera-node"), "--camera and --camera-node: only one of them can choose the camera"};
   if (std::string reason = compression_conflict(options.compression, options.settings.layers); !reason.empty())
     return Conflict{find_setting("compression"), std::move(reason)};
   return std::nullopt;

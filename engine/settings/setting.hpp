@@ -45,11 +45,11 @@ struct Setting {
   const char* unit = "";
   Decides decides = Decides::output;
   bool required = false;
-  bool http = false;               // whether a job's settings may hold it
-  const char* part = nullptr;      // of a job's upload that it comes as
-  const char* limit = nullptr;     // of the service, that its amount is held against
-  const char* service = nullptr;   // the service's own default
-  bool visitors = true;            // whether the service's page offers it
+  bool http = false;              // whether a job's settings may hold it
+  const char* part = nullptr;     // of a job's upload that it comes as
+  const char* limit = nullptr;    // of the service, that its amount is held against
+  const char* service = nullptr;  // the service's own default
+  bool visitors = true;           // whether the service's page offers it
 
   [[nodiscard]] const Kind& kind() const { return *access.kind; }
   [[nodiscard]] bool is_flag() const { return std::string_view(kind().syntax).empty(); }
@@ -68,8 +68,8 @@ struct Given {
 /// Puts what a preset stands for before the rest, without what is given itself. Error{usage} for an unknown preset.
 [[nodiscard]] std::vector<Given> with_presets(std::vector<Given> given);
 
-/// Reads a value and holds it against its range. Throws Error naming the option, the value and the reason: usage where it
-/// is no value of its kind, input where it is out of range.
+/// Reads a value and holds it against its range. Throws Error naming the option, the value and the reason: usage where
+/// it is no value of its kind, input where it is out of range.
 void read_setting(const Given& given, RenderOptions& options);
 
 /// Two settings that exclude each other; nothing where all go together.

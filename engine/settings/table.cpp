@@ -37,10 +37,10 @@ const Setting entries[] = {
 #define SETTING(...)
 #define PICTURE(...)
 #define RUN(...)
-#define PRESET(name, ...)                                     \
-  {name, [] {                                                 \
-     static constexpr PresetValue values[] = {__VA_ARGS__};   \
-     return std::span<const PresetValue>(values);             \
+#define PRESET(name, ...)                                   \
+  {name, [] {                                               \
+     static constexpr PresetValue values[] = {__VA_ARGS__}; \
+     return std::span<const PresetValue>(values);           \
    }()},
 const Preset preset_entries[] = {
 #include "settings/table.def"

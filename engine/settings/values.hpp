@@ -33,7 +33,7 @@ struct ImageSize {
   std::uint32_t width = 1280, height = 720;
 };
 struct NumberOrInfinity {
-  float value = 0;  // a NaN is what was too large for a float
+  float value = 0;                          // a NaN is what was too large for a float
   operator float() const { return value; }  // NOLINT(google-explicit-constructor): it is a float that JSON cannot hold
 };
 struct Rate : std::optional<double> {};  // a number or a fraction
@@ -165,9 +165,8 @@ struct Value<FolderPath> : TextValue<FolderPath> {
 
 template <>
 struct Value<FrameList> : TextValue<FrameList> {
-  static constexpr Kind kind{"frames",
-                             "A-B[:STEP]|N,M,...",
-                             {.scalar = "integer", .text = true, .items = "integer", .most_bytes = 1U << 20U}};
+  static constexpr Kind kind{
+      "frames", "A-B[:STEP]|N,M,...", {.scalar = "integer", .text = true, .items = "integer", .most_bytes = 1U << 20U}};
   static std::string read(std::string_view text, FrameList& value);
   static std::uint64_t amount(const FrameList& value);
 };
@@ -191,10 +190,9 @@ struct Value<Rate> : PlainValue<Rate> {
 
 template <>
 struct Value<SampleCount> {
-  static constexpr Kind kind{
-      "samples",
-      "N|adaptive:ERROR[:MOST]",
-      {.scalar = "integer", .text = true, .pattern = "^adaptive:[0-9.eE+-]+(:[0-9]+)?$"}};
+  static constexpr Kind kind{"samples",
+                             "N|adaptive:ERROR[:MOST]",
+                             {.scalar = "integer", .text = true, .pattern = "^adaptive:[0-9.eE+-]+(:[0-9]+)?$"}};
   static std::string read(std::string_view text, SampleCount& value);
   static nlohmann::ordered_json show(const SampleCount& value);
   static std::string outside(const SampleCount& value, const Range& range);
@@ -204,9 +202,7 @@ struct Value<SampleCount> {
 template <>
 struct Value<ImageSize> {
   static constexpr Kind kind{
-      "size",
-      "WxH",
-      {.text = true, .pattern = "^[0-9]+x[0-9]+$", .items = "integer", .count = 2, .separator = 'x'}};
+      "size", "WxH", {.text = true, .pattern = "^[0-9]+x[0-9]+$", .items = "integer", .count = 2, .separator = 'x'}};
   static std::string read(std::string_view text, ImageSize& value);
   static nlohmann::ordered_json show(const ImageSize& value);
   static std::string outside(const ImageSize& value, const Range& range);

@@ -76,21 +76,13 @@ function bytes(count) {
   return `${(count / 1024 ** power).toFixed(power ? 1 : 0)} ${units[power]}`;
 }
 
-/** What the engine does where nothing is said: not sent, so that a job tells what somebody chose. */
-const DEFAULTS = { strategy: "auto", sort: "auto", primary: "auto", filter: "gaussian", compression: "zip" };
-
+/** The settings that were chosen: what happens anyway is not sent, so that a job tells what somebody chose. */
 function settings() {
   const form = new FormData($("new"));
   const wanted = { frames: form.get("frames").replace(/\s/g, ""), size: form.get("size"), quality: form.get("quality") };
-  if (form.get("fps")) wanted.fps = Number(form.get("fps"));
-  for (const name of ["animation", "camera-node"]) if (form.get(name)) wanted[name] = /^\d+$/.test(form.get(name)) ? Number(form.get(name)) : form.get(name);
-  for (const [name, given] of Object.entries(DEFAULTS)) if (form.get(name) !== given) wanted[name] = form.get(name);
-  for (const name of ["depth", "cutoff"]) if (form.get(name)) wanted[name] = Number(form.get(name));
-  const [samples, error] = [form.get("spp"), form.get("error")];
-  if (error) wanted.spp = ["adaptive", error, samples].filter(Boolean).join(":");
-  else if (samples) wanted.spp = Number(samples);
-  if (form.getAll("aov").length) wanted.aov = form.getAll("aov").join(",");
-  return wanted;
+  const others = Object.entries(SETTINGS).filter(([name, schema]) => !(name in wanted) && schema["x-visitors"]);
+  for (const [name, schema] of others) wanted[name] = valueOf(form, name, schema);
+  return Object.fromEntries(Object.entries(wanted).filter(([, value]) => value !== undefined));
 }
 
 async function submit(event) {

@@ -3,6 +3,7 @@
 #include "routes/contract.hpp"
 #include "routes/resources.hpp"
 #include "routes/routes.hpp"
+#include "settings/setting_json.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -35,8 +36,17 @@ Reply report(RouteContext& context, Request&) {
   return text_reply("application/json", read_text(context.report, most_report));
 }
 
+/// The page with the schema of the settings in it, from which it makes its form.
+std::string page_text() {
+  std::string text = index_html, schema = settings_schema().dump();
+  for (std::size_t at = 0; (at = schema.find("</", at)) != std::string::npos; at += 3) schema.replace(at, 2, "<\\/");
+  constexpr std::string_view place = "/* settings */ {}";
+  return text.replace(text.find(place), place.size(), schema);
+}
+
 Reply page(RouteContext&, Request&) {
-  Reply reply = text_reply("text/html; charset=utf-8", index_html);
+  static const std::string text = page_text();
+  Reply reply = text_reply("text/html; charset=utf-8", text);
   return reply.header("Content-Security-Policy",
                       "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'; "
                       "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");

@@ -42,10 +42,9 @@ CASES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
 
 
 def known_strategies() -> list[str]:
-    """What this build has, from its own help."""
-    done = subprocess.run([SHEAF, "render", "--help"], capture_output=True, text=True, check=True)
-    line = next(line for line in done.stdout.splitlines() if "--strategy" in line)
-    return [word.strip(" ,") for word in line.split("TEXT=", 1)[1].split()[1:]]
+    """What this build has."""
+    done = subprocess.run([SHEAF, "options", "--json"], capture_output=True, text=True, check=True)
+    return next(setting["choices"] for setting in json.loads(done.stdout) if setting["name"] == "strategy")
 
 
 def device() -> dict[str, Any]:

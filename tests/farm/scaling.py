@@ -31,7 +31,7 @@ SCENE = pathlib.Path(__file__).resolve().parent / "../scenes/whitted.glb"
 WAITING = """#!{python} -IS
 import json, pathlib, sys, time
 if sys.argv[1] == "--version": print("sheaf 0.0.0"); raise SystemExit
-if "--help" in sys.argv: print("Options:"); raise SystemExit
+if sys.argv[1] == "options": print("[]"); raise SystemExit
 given = dict(word[2:].split("=", 1) for word in sys.argv if word.startswith("--") and "=" in word)
 given |= {{a[2:]: b for a, b in zip(sys.argv, sys.argv[1:]) if a.startswith("--") and "=" not in a}}
 out = pathlib.Path(given["out"]); out.mkdir(parents=True, exist_ok=True)

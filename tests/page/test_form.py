@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import re
+import json
 import subprocess
 from collections.abc import Callable
 
@@ -14,33 +14,34 @@ Visit = Callable[..., object]
 
 
 @pytest.fixture(scope="module")
-def options() -> dict[str, tuple[str | None, str]]:
-    """Of each option of `sheaf render`: its default, and what the help says of it."""
-    said = subprocess.run([BUILD / "sheaf", "render", "--help"], capture_output=True, text=True, check=True).stdout
-    found = re.findall(r"^  --([a-z-]+) TEXT(?:=(\S+))? +(.+)$", said, re.M)
-    return {name: (default or None, words) for name, default, words in found}
+def table() -> dict[str, dict]:
+    """What the engine says of each setting."""
+    said = subprocess.run([BUILD / "sheaf", "options", "--json"], capture_output=True, text=True, check=True).stdout
+    return {setting["name"]: setting for setting in json.loads(said)}
 
 
-@pytest.mark.parametrize(
-    ("name", "choices"),
-    [
-        ("strategy", r"(\w+)(?:,|$)"),
-        ("sort", r"(\w+)(?:,|$| or )"),
-        ("primary", r"(\w+)(?:,|:| or )"),
-        ("filter", r"(\w+)(?:,|$| or )"),
-        ("compression", r"(\w+)(?:,|$)"),
-        ("quality", r"(\w+) = "),
-    ],
-)
-def test_every_choice_of_the_engine_is_offered(
-    visit: Visit, options: dict[str, tuple[str | None, str]], name: str, choices: str
-) -> None:
-    default, words = options[name]
-    known = set(re.findall(choices, words.split(": ", 1)[-1] if name == "filter" else words))
+def test_every_setting_of_the_service_is_offered(visit: Visit, table: dict[str, dict]) -> None:
+    page = visit()
+    offered = {name for name in page.evaluate("[...new FormData($('new')).keys()]") if name != "error"}
+    boxes = page.locator("#new [type=checkbox]").evaluate_all("(boxes) => boxes.map((box) => box.name)")
+    # A name of files and a device are no visitor's matter, and the page needs its previews.
+    assert (offered | set(boxes)) - {""} == {n for n, s in table.items() if s["http"]} - {"name", "device", "preview"}
+
+
+@pytest.mark.parametrize("name", ["strategy", "sort", "primary", "instances", "filter", "compression", "quality"])
+def test_every_choice_of_the_engine_is_offered(visit: Visit, table: dict[str, dict], name: str) -> None:
     field = visit().locator(f"[name={name}]")
-    assert len(known) > 2
-    assert set(field.evaluate("(field) => [...field.options].map((option) => option.value)")) == known
-    assert default is None or field.input_value() == default
+    choices = field.evaluate("(field) => [...field.options].map((option) => option.value)")
+    assert choices == table[name]["choices"]
+    assert len(choices) > 2
+    assert table[name]["default"] is None or field.input_value() == table[name]["default"]
+
+
+def test_ranges_are_those_of_the_engine(visit: Visit, table: dict[str, dict]) -> None:
+    page = visit()
+    for name in ("depth", "cutoff", "memory", "spp"):
+        field = page.locator(f"[name={name}]")
+        assert [float(field.get_attribute("min")), float(field.get_attribute("max"))] == table[name]["range"]
 
 
 def sent(page) -> dict:
@@ -61,13 +62,19 @@ def test_what_was_chosen_is_sent(visit: Visit) -> None:
     page = visit()
     page.click("summary")
     chosen = {"strategy": "classify", "sort": "on", "primary": "raster", "filter": "box", "compression": "piz"}
+    chosen |= {"instances": "shared", "count": "on"}
     for name, value in chosen.items():
         page.select_option(f"[name={name}]", value)
     page.fill("[name=depth]", "0")
     page.fill("[name=cutoff]", "0.01")
     page.fill("[name=spp]", "16")
     page.check("[value=P]")
-    wanted = {**chosen, "depth": 0, "cutoff": 0.01, "spp": 16, "aov": "Z,N,id,P,tests"}
+    page.check("[name=opaque]")
+    page.fill("[name=environment]", "1,1,0.5")
+    page.fill("[name=z-background]", "inf")
+    page.fill("[name=scene-name]", "0")
+    wanted = {**chosen, "depth": 0, "cutoff": 0.01, "spp": 16, "aov": "Z,N,P,id,tests", "opaque": True}
+    wanted |= {"environment": "1,1,0.5", "z-background": "inf", "scene-name": 0}
     assert {name: sent(page).get(name) for name in wanted} == wanted
     page.fill("[name=error]", "0.02")
     assert sent(page)["spp"] == "adaptive:0.02:16"

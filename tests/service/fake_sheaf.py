@@ -26,42 +26,20 @@ DEVICE = {"name": "a fake one", "driver": "none"}
 
 
 def parse() -> argparse.Namespace:
+    """Takes any option; of those that come as `--name=value` nobody needs a list."""
     parser = argparse.ArgumentParser()
     parser.add_argument("command", choices=["render", "devices", "inspect"])
     parser.add_argument("scene", nargs="?")
-    parser.add_argument("--json", action="store_true")
-    parser.add_argument("--preview", action="store_true")
-    parser.add_argument("--opaque", action="store_true")
-    parser.add_argument("--resume", action="store_true")
-    for name in (
-        "out",
-        "stats",
-        "progress",
-        "camera",
-        "frames",
-        "fps",
-        "animation",
-        "camera-node",
-        "size",
-        "quality",
-        "spp",
-        "filter",
-        "depth",
-        "cutoff",
-        "strategy",
-        "sort",
-        "primary",
-        "aov",
-        "compression",
-        "name",
-        "memory",
-        "device",
-        "scene-name",
-        "environment",
-        "count",
-    ):
+    for name in ("json", "preview", "opaque", "resume"):
+        parser.add_argument("--" + name, action="store_true")
+    for name in ("out", "stats", "progress", "camera", "frames", "name"):
         parser.add_argument("--" + name)
-    return parser.parse_args()
+    known, others = parser.parse_known_args()
+    for option in others:
+        name, given, _ = option.partition("=")
+        if not (name.startswith("--") and given):
+            parser.error(f"{option}: not --name=value")
+    return known
 
 
 def say(**event: object) -> None:

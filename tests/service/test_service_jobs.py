@@ -49,7 +49,9 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
         "strategy": "hybrid",
         "sort": "on",
         "primary": "trace",
+        "instances": "shared",
         "aov": ["Z", "N"],
+        "z-background": "inf",
         "compression": "piz",
         "name": "shot.####.exr",
         "memory": 512,
@@ -80,6 +82,8 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
             "--strategy=hybrid",
             "--sort=on",
             "--primary=trace",
+            "--instances=shared",
+            "--z-background=inf",
             "--aov=Z,N",
             "--compression=piz",
             "--name=shot.####.exr",
@@ -128,6 +132,12 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
         ({"fps": "24/0"}, "bad-settings", "/fps"),
         ({"strategy": "fast"}, "bad-settings", "/strategy"),
         ({"aov": "Z;rm"}, "bad-settings", "/aov"),
+        ({"aov": "Z,motion"}, "bad-settings", "/aov"),
+        ({"aov": "N", "compression": "dwaa"}, "bad-settings", "/compression"),
+        ({"instances": "both"}, "bad-settings", "/instances"),
+        ({"memory": 15}, "bad-settings", "/memory"),
+        ({"camera": "path.json"}, "bad-settings", "/camera"),
+        ({"z-background": "far"}, "bad-settings", "/z-background"),
         ({"name": "../frame.####.exr"}, "bad-settings", "/name"),
         ({"name": "frame.exr"}, "bad-settings", "/name"),
         ({"preview": "yes"}, "bad-settings", "/preview"),
@@ -141,6 +151,18 @@ def test_bad_settings_are_refused_by_name(sheafd: Service, settings: dict, slug:
     assert pointer[1:] in problem["detail"]
     if slug == "limit-exceeded":
         assert problem["value"] > problem["limit"]
+
+
+def test_an_unknown_layer_is_refused_with_those_that_there_are(sheafd: Service) -> None:
+    problem = check_problem(sheafd.submit(gltf(), {"aov": ["Z", "motion"]}), 422, "bad-settings")
+    assert all(f" {layer}" in problem["detail"] for layer in ("Z", "N", "P", "albedo", "UV", "id", "tests", "all"))
+
+
+def test_what_a_quality_stands_for_is_held_against_the_limits(start: Callable[..., Service]) -> None:
+    few = start("--max-depth", "16")
+    problem = check_problem(few.submit(gltf(), {"quality": "exact"}), 422, "limit-exceeded")
+    assert (problem["pointer"], problem["limit_name"], problem["value"]) == ("/quality", "max-depth", 32)
+    assert few.submit(gltf(), {"quality": "exact", "depth": 8}).status_code == 202  # what is given beside it counts
 
 
 def test_a_value_is_never_read_as_an_option(sheafd: Service) -> None:

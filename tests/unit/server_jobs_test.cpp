@@ -117,8 +117,7 @@ TEST(Outcome, FollowsTheTable) {
 }
 
 TEST(WorkerEvents, AreTakenOnlyWhereTheyAreWhole) {
-  const auto frame =
-      parse_worker_event(R"({"event":"frame","frame":-3,"wall_ms":2,"file":"/a/b/f.-003.exr","new":1})");
+  const auto frame = parse_worker_event(R"({"event":"frame","frame":-3,"wall_ms":2,"file":"/a/b/f.-003.exr","new":1})");
   ASSERT_TRUE(frame && std::holds_alternative<FrameEvent>(*frame));
   EXPECT_EQ(std::get<FrameEvent>(*frame).file, "f.-003.exr");
   EXPECT_EQ(std::get<FrameEvent>(*frame).frame, -3);

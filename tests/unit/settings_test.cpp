@@ -40,8 +40,9 @@ TEST(SettingsTable, IsSound) {
     EXPECT_FALSE(setting.http && setting.part != nullptr) << setting.name;
     EXPECT_EQ(find_setting(setting.name), &setting);
     const RenderOptions defaults;
-    EXPECT_EQ(setting.required || setting.access.show(defaults).is_null() ? ""
-                                                                          : setting.access.outside(defaults, setting.range),
+    EXPECT_EQ(setting.required || setting.access.show(defaults).is_null()
+                  ? ""
+                  : setting.access.outside(defaults, setting.range),
               "")
         << setting.name << "'s default is out of its range";
     const JsonForm& form = setting.kind().json;
