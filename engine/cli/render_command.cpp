@@ -52,6 +52,7 @@ class Job {
   void finish_writing();
   void save_stats(bool last);
   [[nodiscard]] bool already_there(std::int64_t number) const;
+  [[nodiscard]] fs::path folder() const { return static_cast<const std::string&>(options_.out); }
   [[nodiscard]] double seconds(std::int64_t number) const { return static_cast<double>(number) / fps_; }
 
   RenderOptions& options_;
@@ -89,18 +90,18 @@ Job::Job(RenderOptions& options, Progress& progress)
 }
 
 bool Job::already_there(std::int64_t number) const {
-  const auto path = (fs::path(options_.out) / names_.frame(number)).string();
+  const auto path = (folder() / names_.frame(number)).string();
   return options_.resume && exr_is_whole(path, options_.settings.width, options_.settings.height);
 }
 
 void Job::write(RenderedFrame frame, const FrameRequest& request) {
   const auto number = request.number;
   const auto begun = Clock::now();
-  const auto path = (fs::path(options_.out) / names_.frame(number)).string();
+  const auto path = (folder() / names_.frame(number)).string();
   const auto attributes =
       frame_attributes(scene_, options_, request.camera, number, request.time_s, fps_, stats_.strategy);
   if (options_.preview) {
-    const auto preview = (fs::path(options_.out) / names_.preview(number)).string();
+    const auto preview = (folder() / names_.preview(number)).string();
     write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
   }
   write_exr(path, frame.layers, attributes, options_.compression);

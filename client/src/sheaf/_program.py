@@ -104,9 +104,7 @@ def find_program(given: str | os.PathLike[str] | None = None) -> Program:
         choices = {setting["name"]: tuple(setting["choices"] or ()) for setting in json.loads(table)}
     except (ValueError, TypeError, KeyError) as error:
         raise SheafError(f"{path}: what its options are is no table of settings ({error!r})") from error
-    return Program(
-        path, version.strip(), choices.get("strategy", ()), frozenset(choices), choices.get("quality", ())
-    )
+    return Program(path, version.strip(), choices.get("strategy", ()), frozenset(choices), choices.get("quality", ()))
 
 
 def option_list(settings: Mapping[str, object]) -> list[str]:
