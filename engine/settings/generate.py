@@ -12,6 +12,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTH = 116  # of a line of Python
@@ -33,6 +34,15 @@ PYTHON_TYPES = {
 
 def sentence(text: str) -> str:
     return text[0].upper() + text[1:] + "."
+
+
+def docstring(text: str) -> list[str]:
+    """What stands below a field, in lines that are not too long."""
+    lines = textwrap.wrap(sentence(text), WIDTH - 6)
+    lines = ['    """' + lines[0], *("    " + line for line in lines[1:])]
+    if len(lines) > 1:
+        return [*lines, '    """']
+    return [lines[0] + '"""']
 
 
 def number(value: float) -> str:
@@ -84,7 +94,7 @@ def python_text(table: list[dict]) -> str:
             choices = [f'            "{choice}",' for choice in setting["choices"]]
             field = "\n".join([f"    {name}: (", "        Literal[", *choices, "        ]", "        | None", "    )"])
         known = f" ({facts(setting)})" if facts(setting) and setting["type"] != "choice" else ""
-        lines += [field, f'    """{sentence(setting["help"] + known)}"""']
+        lines += [field, *docstring(setting["help"] + known)]
     lines += [
         "",
         "",
@@ -109,13 +119,12 @@ def python_text(table: list[dict]) -> str:
         "SETTINGS: Mapping[str, Setting] = {",
     ]
     for setting in taken:
-        known = f" ({facts(setting)})" if facts(setting) and not setting["choices"] else ""
         values = (
             setting["type"],
             setting["syntax"],
             tuple(setting["choices"] or ()),
             setting["default"],
-            setting["help"] + known,
+            setting["help"],
         )
         lines.append(f"    {setting['name']!r}: Setting{values!r},")
     lines += ["}", "", "PRESETS: Mapping[str, Mapping[str, str | int | float]] = {"]

@@ -19,9 +19,11 @@ class RenderSettings(TypedDict, total=False):
     scene_name: str | int | None
     """Which scene of the file; default the file's own."""
     frames: str | int | Iterable[int] | None
-    """Which frames."""
+    """Which frames are rendered."""
     fps: float | str | None
-    """Frame f shows the time f / fps, 24000/1001 for example; default the camera path's, else 24 (above 0, at most 1000000 frames per second)."""
+    """Frame f shows the time f / fps; default the camera path's, else 24 (above 0, at most 1000000 frames per
+    second).
+    """
     animation: str | int | None
     """Which animation, or all; default the first."""
     size: str | tuple[int, int] | None
@@ -29,7 +31,7 @@ class RenderSettings(TypedDict, total=False):
     quality: Literal["draft", "production", "exact"] | None
     """Named settings, which others given beside it change."""
     spp: int | str | None
-    """Samples per pixel, or as many as the error asks for, at most MOST (256) (1 to 65536)."""
+    """Samples per pixel, or as many as ERROR asks for, at most MOST, else 256 (1 to 65536)."""
     filter: Literal["box", "triangle", "gaussian"] | None
     """How samples make up a pixel."""
     depth: int | None
@@ -45,7 +47,7 @@ class RenderSettings(TypedDict, total=False):
     z_background: float | str | None
     """Layer Z where nothing is hit (metres)."""
     compression: Literal["none", "rle", "zips", "zip", "piz", "dwaa"] | None
-    """Of the frames."""
+    """How the frames are compressed."""
     strategy: (
         Literal[
             "auto",
@@ -67,11 +69,11 @@ class RenderSettings(TypedDict, total=False):
     primary: Literal["auto", "raster", "trace"] | None
     """First hits by the raster pass or traced; auto: raster, but where a pixel has more than eight triangles."""
     instances: Literal["auto", "copied", "shared"] | None
-    """Copied: triangles of each instance (fast); shared: posed when read (small); auto: shared from 8 million copied triangles on."""
+    """Copied: triangles of each (fast); shared: posed when read (small); auto: shared from 8 million copied on."""
     memory: int | None
-    """For rays and what else scales with the picture (16 to 1048576 MiB)."""
+    """Memory for rays and what else scales with the picture (16 to 1048576 MiB)."""
     device: str | int | None
-    """Index or part of a name; default the fastest."""
+    """Vulkan device, by index or part of its name."""
     name: str | None
     """File names, # for the frame number; default <scene>.####.exr."""
     preview: bool | None
@@ -107,16 +109,10 @@ SETTINGS: Mapping[str, Setting] = {
         "a camera of the scene; default the first, else the scene is framed whole",
     ),
     "scene-name": Setting("name-or-index", "NAME|INDEX", (), None, "which scene of the file; default the file's own"),
-    "frames": Setting("frames", "A-B[:STEP]|N,M,...", (), "0", "which frames"),
-    "fps": Setting(
-        "rate",
-        "N|N/M",
-        (),
-        None,
-        "frame f shows the time f / fps, 24000/1001 for example; default the camera path's, else 24 (above 0, at most 1000000 frames per second)",
-    ),
+    "frames": Setting("frames", "A-B[:STEP]|N,M,...", (), "0", "which frames are rendered"),
+    "fps": Setting("rate", "N|N/M", (), None, "frame f shows the time f / fps; default the camera path's, else 24"),
     "animation": Setting("name-or-index", "NAME|INDEX|all", (), None, "which animation, or all; default the first"),
-    "size": Setting("size", "WxH", (), "1280x720", "width and height of the picture (1 to 16384 pixels)"),
+    "size": Setting("size", "WxH", (), "1280x720", "width and height of the picture"),
     "quality": Setting(
         "choice", "NAME", ("draft", "production", "exact"), None, "named settings, which others given beside it change"
     ),
@@ -125,24 +121,26 @@ SETTINGS: Mapping[str, Setting] = {
         "N|adaptive:ERROR[:MOST]",
         (),
         1,
-        "samples per pixel, or as many as the error asks for, at most MOST (256) (1 to 65536)",
+        "samples per pixel, or as many as ERROR asks for, at most MOST, else 256",
     ),
     "filter": Setting("choice", "NAME", ("box", "triangle", "gaussian"), "gaussian", "how samples make up a pixel"),
-    "depth": Setting("integer", "N", (), 4, "generations of reflection and refraction (0 to 4096)"),
-    "cutoff": Setting("number", "W", (), 0.002, "least weight of a ray worth following (0 to 1)"),
+    "depth": Setting("integer", "N", (), 4, "generations of reflection and refraction"),
+    "cutoff": Setting("number", "W", (), 0.002, "least weight of a ray worth following"),
     "opaque": Setting("flag", "", (), False, "every surface opaque and two-sided"),
     "environment": Setting(
         "color",
         "R,G,B",
         (),
         None,
-        "radiance of what rays that miss everything see; default 0, or 0.4 in a scene without lights (0 to 1000000)",
+        "radiance of what rays that miss everything see; default 0, or 0.4 in a scene without lights",
     ),
     "aov": Setting(
         "layers", "LIST", ("Z", "N", "P", "albedo", "UV", "id", "tests", "all"), None, "further layers in the frames"
     ),
-    "z-background": Setting("number-or-inf", "X|inf", (), 10000000000.0, "layer Z where nothing is hit (metres)"),
-    "compression": Setting("choice", "NAME", ("none", "rle", "zips", "zip", "piz", "dwaa"), "zip", "of the frames"),
+    "z-background": Setting("number-or-inf", "X|inf", (), 10000000000.0, "layer Z where nothing is hit"),
+    "compression": Setting(
+        "choice", "NAME", ("none", "rle", "zips", "zip", "piz", "dwaa"), "zip", "how the frames are compressed"
+    ),
     "strategy": Setting(
         "choice",
         "NAME",
@@ -165,10 +163,10 @@ SETTINGS: Mapping[str, Setting] = {
         "NAME",
         ("auto", "copied", "shared"),
         "auto",
-        "copied: triangles of each instance (fast); shared: posed when read (small); auto: shared from 8 million copied triangles on",
+        "copied: triangles of each (fast); shared: posed when read (small); auto: shared from 8 million copied on",
     ),
-    "memory": Setting("integer", "MIB", (), 1024, "for rays and what else scales with the picture (16 to 1048576 MiB)"),
-    "device": Setting("name-or-index", "NAME|INDEX", (), None, "index or part of a name; default the fastest"),
+    "memory": Setting("integer", "MIB", (), 1024, "memory for rays and what else scales with the picture"),
+    "device": Setting("name-or-index", "NAME|INDEX", (), None, "Vulkan device, by index or part of its name"),
     "name": Setting("text", "PATTERN", (), None, "file names, # for the frame number; default <scene>.####.exr"),
     "preview": Setting("flag", "", (), False, "a tone-mapped PNG beside each frame"),
     "count": Setting(
