@@ -22,9 +22,9 @@ std::string preset_help() {
 std::string help_of(const Setting& setting) {
   std::string help = setting.help;
   if (setting.kind().choices.data() == preset_names().data()) return help + ": " + preset_help();
-  for (const char* choice : setting.kind().choices)
-    help += (choice == setting.kind().choices.front() ? ": " : ", ") + std::string(choice);
-  return help;
+  std::string list;
+  for (const char* choice : setting.kind().choices) list += (list.empty() ? "" : ", ") + std::string(choice);
+  return list.empty() ? help : help + " (" + list + ")";
 }
 
 std::string group_of(const Setting& setting) {

@@ -25,7 +25,7 @@ class ReferenceFrames final : public FrameSource {
     s.depth = settings_.depth;
     s.cutoff = settings_.cutoff;
     s.opaque = settings_.opaque;
-    s.transparent_glass = settings_.transparent_glass;
+    s.transparent_glass = settings_.glass_alpha == GlassAlpha::transparent;
     s.stop = request.stop;
     if (settings_.environment) s.environment = glm::dvec3(*settings_.environment);
     const ReferenceFrame frame = render_reference(scene_, request.pose, request.camera, s);

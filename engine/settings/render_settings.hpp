@@ -31,6 +31,9 @@ constexpr auto choice_names(PrimaryMethod) { return std::array{"auto", "raster",
 enum class InstancePolicy { automatic, copied, shared };
 constexpr auto choice_names(InstancePolicy) { return std::array{"auto", "copied", "shared"}; }
 
+enum class GlassAlpha { opaque, transparent };
+constexpr auto choice_names(GlassAlpha) { return std::array{"opaque", "transparent"}; }
+
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): the same entries make fields here and the table in table.cpp
 #define PRESET(...)
 #define SETTING(...)

@@ -40,15 +40,17 @@ ordered_json preset_json() {
 
 bool names_presets(const Setting& setting) { return setting.kind().choices.data() == preset_names().data(); }
 
+ordered_json bound(double value) {  // a whole one without ".0"
+  const auto whole = static_cast<std::int64_t>(value);
+  return value == static_cast<double>(whole) ? ordered_json(whole) : ordered_json(value);
+}
+
+ordered_json range_json(const Range& range) { return {bound(range.low), bound(range.high)}; }
+
 void add_bounds(ordered_json& schema, const Range& range) {
   if (!range.bounded()) return;
-  const auto number = [](double value) {
-    return value == static_cast<double>(static_cast<std::int64_t>(value))
-               ? ordered_json(static_cast<std::int64_t>(value))
-               : ordered_json(value);
-  };
-  schema[range.above ? "exclusiveMinimum" : "minimum"] = number(range.low);
-  schema["maximum"] = number(range.high);
+  schema[range.above ? "exclusiveMinimum" : "minimum"] = bound(range.low);
+  schema["maximum"] = bound(range.high);
 }
 
 ordered_json scalar_schema(const Setting& setting) {
@@ -142,7 +144,7 @@ ordered_json settings_description() {
     const Kind& kind = setting.kind();
     ordered_json entry{{"name", setting.name}, {"type", kind.name}, {"syntax", setting.form()}};
     entry["range"] = nullptr;
-    if (setting.range.bounded()) entry["range"] = {setting.range.low, setting.range.high};
+    if (setting.range.bounded()) entry["range"] = range_json(setting.range);
     if (setting.range.above) entry["above"] = true;
     entry["choices"] = kind.choices.empty() ? ordered_json() : choices_json(kind);
     if (names_presets(setting)) entry["presets"] = preset_json();
@@ -177,7 +179,7 @@ ordered_json settings_schema() {
     schema["x-syntax"] = setting.form();
     schema["x-group"] = name_of(setting.group);
     if (*setting.unit != '\0') schema["x-unit"] = setting.unit;
-    if (setting.range.bounded()) schema["x-range"] = {setting.range.low, setting.range.high};
+    if (setting.range.bounded()) schema["x-range"] = range_json(setting.range);
     if (setting.limit != nullptr) schema["x-limit"] = setting.limit;
     if (names_presets(setting)) schema["x-presets"] = preset_json();
     schema["x-visitors"] = setting.visitors;

@@ -23,7 +23,7 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
                              SpecConstant{SPEC_RASTER, plan.raster},
                              SpecConstant{SPEC_LANES, device.limits().subgroup},
                              SpecConstant{SPEC_TRANSLUCENT, features.transmissive},
-                             SpecConstant{SPEC_GLASS_ALPHA, settings.transparent_glass && features.transmissive}};
+                             SpecConstant{SPEC_GLASS_ALPHA, settings.glass_alpha == GlassAlpha::transparent && features.transmissive}};
   generate_ = Kernel(device, "generate", constants);
 }
 
