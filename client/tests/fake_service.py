@@ -33,6 +33,7 @@ class FakeJob:
     warnings: list[str] = field(default_factory=list)
     cancel_requested: bool = False
     slow_to_stop: bool = False
+    ends_unseen: bool = False  # between a look at it and the next request that changes something
     after_events: str | None = None  # the state once all events have been told
     parts: list[tuple[str, str | None, bytes]] = field(default_factory=list)
 
@@ -188,7 +189,15 @@ class Handler(BaseHTTPRequestHandler):
         self.json(200, {"jobs": page, "next": following})
 
     def _job(self, job: FakeJob, rest: str, headers: dict[str, str], query: dict[str, str]) -> None:
-        if not rest and self.command == "DELETE":
+        if job.ends_unseen and self.command != "GET":
+            job.state = "done"
+        if rest == "/cancel" and self.command == "POST":
+            running = job.state in ("queued", "running")
+            if running:
+                job.cancel_requested = True
+                job.state = "running" if job.slow_to_stop else "cancelled"
+            self.json(202 if running else 200, job.to_json())
+        elif not rest and self.command == "DELETE":
             if job.state in ("queued", "running") and not job.cancel_requested:
                 job.cancel_requested = True
                 job.state = "running" if job.slow_to_stop else "cancelled"

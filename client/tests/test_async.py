@@ -135,6 +135,20 @@ def test_failures_cancel_and_delete(use: Callable[[Use], Any], service: FakeServ
     assert list(service.jobs) == ["bad"]
 
 
+def test_a_job_that_ends_while_it_is_cancelled_keeps_its_frames(
+    use: Callable[[Use], Any], service: FakeService, exr: bytes
+) -> None:
+    service.add(FakeJob("abc", "running", frames={3: exr}, ends_unseen=True))
+
+    async def action(client: sheaf.AsyncClient) -> None:
+        job = await client.job("abc")
+        assert (await job.cancel()).state == "done"
+        assert [frame.number async for frame in job.frames()] == [3]
+
+    use(action)
+    assert list(service.jobs) == ["abc"]
+
+
 def test_the_deadline_is_kept(use: Callable[[Use], Any], service: FakeService) -> None:
     service.add(FakeJob("run", "running", pending=[1]))
 

@@ -204,7 +204,7 @@ def test_stats_log_cancel_delete(client: sheaf.Client, service: FakeService, run
     assert job.log() == "rendered two frames\n"
     assert job.cancel().state == "cancelled"
     assert job.cancel().state == "cancelled"
-    assert len(service.asked("DELETE")) == 1
+    assert service.asked("DELETE") == []
     job.delete()
     job.delete()
     with pytest.raises(sheaf.NotFound):
@@ -230,13 +230,23 @@ def test_cancelling_twice_or_with_a_lost_answer_never_removes(
         hang_up(handler)
 
     running.slow_to_stop = True
-    service.fault("DELETE", hang_up)
-    service.fault("DELETE", cancel_and_hang_up)
+    service.fault("POST", hang_up)
+    service.fault("POST", cancel_and_hang_up)
     job = client.job("abc")
     assert job.cancel().info.cancel_requested
     assert job.cancel().state == "running"
-    assert len(service.asked("DELETE")) == 2
+    assert len(service.asked("POST")) == 4
     assert list(service.jobs) == ["abc"]
+
+
+def test_a_job_that_ends_while_it_is_cancelled_keeps_its_frames(
+    client: sheaf.Client, service: FakeService, running: FakeJob
+) -> None:
+    running.ends_unseen = True
+    job = client.job("abc")
+    assert job.state == "running"
+    assert job.cancel().state == "done"
+    assert [frame.number for frame in job.frames()] == [3]
 
 
 def test_events_after_the_last_one_are_none(client: sheaf.Client, running: FakeJob) -> None:

@@ -95,12 +95,17 @@ def test_a_scene_that_stands_still_is_timed_by_a_process_a_run() -> None:
 
 def test_errors_fronts_and_named_settings() -> None:
     scene = found()["scenes"][0]
-    knobs = {(trial["settings"]["spp"], trial["settings"]["depth"]): trial for trial in scene["knobs"]}
+    knobs = {(trial["settings"].get("spp"), trial["settings"].get("depth")): trial for trial in scene["knobs"]}
     # Wrong by 0.1/spp + 0.05/(depth + 1); the reference by 0.05/17; in half precision.
     assert knobs[(2, 1)]["error"]["rmse"] == pytest.approx(0.05 + 0.025 - 0.05 / 17, rel=0.01)
     assert knobs[(2, 1)]["error"]["worst"] == pytest.approx(0.075 - 0.05 / 17, abs=1e-3)
     assert 0 < knobs[(2, 1)]["error"]["flip"] < 1
-    assert [trial["name"] for trial in scene["knobs"][:3]] == ["draft", "production", "exact"]
+    # What the program itself names, by its own meaning.
+    assert [trial["name"] for trial in scene["knobs"][:3]] == ["rough", "fine", None]
+    assert [trial["settings"] for trial in scene["knobs"][:2]] == [
+        {"strategy": "bvh", "quality": name} for name in ("rough", "fine")
+    ]
+    assert scene["knobs"][1]["error"]["rmse"] == pytest.approx(0.025 + 0.05 / 7 - 0.05 / 17, rel=0.01)
     assert knobs[(1, 1)]["pareto"] == {"time": True, "tests": True}  # the cheapest of all
     assert scene["strategies"][1]["pareto"]["tests"] is False  # the same error for more
 

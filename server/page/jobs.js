@@ -118,11 +118,11 @@ function actions(job) {
   const over = OVER.includes(job.state);
   const act = (text, run, danger = false) => element("button", { type: "button", textContent: text, className: danger ? "danger" : "", onclick: run });
   const buttons = [];
-  if (job.progress.done && over) buttons.push(act("All frames (.zip)", () => save(job.links.frames_zip, `${job.scene.name}.zip`)));
+  if (job.progress.done && over) buttons.push(act("All frames (.zip)", () => save(job.links.frames_zip, `${job.scene.name.split("/").pop()}.zip`)));
   if (job.progress.done) buttons.push(act("Stats", () => save(job.links.stats, "stats.json")), act("Table", () => save(job.links.stats_csv, "stats.csv")));
   buttons.push(act("Log", () => save(job.links.log, "log.txt")));
   buttons.push(over ? act("Remove", () => remove(job, `Remove ${job.scene.name} with all its frames?`), true)
-    : act("Cancel", () => remove(job, null), true));
+    : act("Cancel", () => cancel(job), true));
   $("job-actions").replaceChildren(...buttons);
 }
 
@@ -134,13 +134,21 @@ async function save(link, name) {
   } catch (error) { showError("job-error", error.message); }
 }
 
+async function cancel(job) {
+  try {
+    await ask(`${relative(job.links.self)}/cancel`, { method: "POST" });
+    select(job.id);
+  } catch (error) { showError("job-error", error.message); }
+}
+
 async function remove(job, question) {
-  if (question && !confirm(question)) return;
-  if (!question && (job.cancel_requested || OVER.includes(job.state))) return;
+  if (!confirm(question)) return;
   try {
     await ask(relative(job.links.self), { method: "DELETE" });
-    if (question) { page.jobs = page.jobs.filter((each) => each.id !== job.id); page.watching?.abort(); page.selected = null; gone(new Error("Send a scene, or choose one of the jobs.")); }
-    else select(job.id);
+    page.jobs = page.jobs.filter((each) => each.id !== job.id);
+    page.watching?.abort();
+    page.selected = null;
+    gone(new Error("Send a scene, or choose one of the jobs."));
   } catch (error) { showError("job-error", error.message); }
 }
 

@@ -61,6 +61,24 @@ def test_frames_arrive_while_one_watches(visit: Visit, client: sheaf.Client) -> 
         job.refresh()
 
 
+def test_a_job_that_ends_while_it_is_cancelled_keeps_its_frames(visit: Visit, client: sheaf.Client) -> None:
+    job = client.submit(SCENES / "whitted.glb", frames="0-999", size="320x180", strategy="reference")
+    page = visit(f"#job={job.id}")
+    expect(page.locator("#strip li.done").nth(1)).to_be_attached()
+
+    def end_before(route) -> None:
+        if route.request.method in ("POST", "DELETE"):
+            job.cancel()
+            with pytest.raises(sheaf.JobCancelled):
+                job.wait()
+        route.continue_()
+
+    page.route("**/v1/jobs/**", end_before)
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#job-state")).to_have_text("cancelled")
+    assert next(iter(job.frames())).rgba.shape == (180, 320, 4)
+
+
 def test_playing_by_mouse_and_keyboard(visit: Visit, done: sheaf.Job) -> None:
     page = visit(f"#job={done.id}")
     screen = page.locator("#screen")

@@ -128,14 +128,8 @@ class AsyncJob(JobView):
 
     async def cancel(self) -> AsyncJob:
         """Stops the job, keeping the frames that are whole; does nothing where it is over."""
-        await self._session.patiently(self._cancel_once)
-        return await self.refresh()
-
-    async def _cancel_once(self) -> None:
-        # Asked anew before every try: for a job that is cancelled already, DELETE means remove.
-        await self.refresh()
-        if not (self.info.is_over or self.info.cancel_requested):
-            await self._session.once(_calls.delete(self.id))
+        self.info = await self._session.call(_calls.cancel(self.id))
+        return self
 
     async def delete(self) -> None:
         """Stops the job and removes it with all its frames; does nothing where it is gone already."""

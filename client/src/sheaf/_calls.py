@@ -59,6 +59,11 @@ def jobs(state: str | None, cursor: str | None, limit: int | None) -> Call[JobPa
     return Call("GET", "v1/jobs", lambda response: JobPage.from_json(json_object(response)), params=given)
 
 
+def cancel(job_id: str) -> Call[JobInfo]:
+    """`POST /v1/jobs/{id}/cancel`: never removes a job, whatever it does meanwhile."""
+    return Call("POST", _path(job_id, "cancel"), _job_info)
+
+
 def delete(job_id: str) -> Call[None]:
     """`DELETE /v1/jobs/{id}`."""
     return Call("DELETE", _path(job_id), lambda response: None)

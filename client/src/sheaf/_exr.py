@@ -30,8 +30,8 @@ class Frame:
 
     Attributes:
         layers: arrays by layer name, rows from the top. "RGBA" (H, W, 4): linear Rec.709, premultiplied;
-            and as asked for by `aov`: "Z" (H, W), "N" and "P" (H, W, 3), "albedo" (H, W, 3), "UV" and "motion"
-            (H, W, 2), "tests" (H, W), "id.object" and "id.material" (H, W) uint32. All others are float32: halves
+            and as asked for by `aov`: "Z" (H, W), "N" and "P" (H, W, 3), "albedo" (H, W, 3), "UV" (H, W, 2),
+            "tests" (H, W), "id.object" and "id.material" (H, W) uint32. All others are float32: halves
             are widened, which is exact, because half arithmetic overflows at 65504.
         attributes: the EXR header's attributes, matrices as arrays.
         number: absolute frame number; None where the file does not say.

@@ -159,13 +159,8 @@ class Job(JobView):
 
         Returns the job itself; its state is "cancelled" once the renderer has stopped, within about a second.
         """
-        self._session.patiently(self._cancel_once)
-        return self.refresh()
-
-    def _cancel_once(self) -> None:
-        # Asked anew before every try: for a job that is cancelled already, DELETE means remove.
-        if not (self.refresh().info.is_over or self.info.cancel_requested):
-            self._session.once(_calls.delete(self.id))
+        self.info = self._session.call(_calls.cancel(self.id))
+        return self
 
     def delete(self) -> None:
         """Stops the job and removes it with all its frames; does nothing where it is gone already."""

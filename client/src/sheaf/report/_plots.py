@@ -10,12 +10,13 @@ from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
 from ._canvas import KIND_COLOURS, KIND_MARKS, Draw, Theme, rows, short
 from ._measure import KINDS, Trial
 from ._scatter import scatter
 from ._study import SceneStudy
+from ._ticks import log_ticks
 
 
 @dataclass(frozen=True)
@@ -119,9 +120,7 @@ def _dots(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
             if span:
                 axes.plot([min(span), max(span)], [row, row], color=theme.grid, linewidth=2, zorder=1)
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.xaxis.set_major_formatter(lambda value, _: short(value))
+        log_ticks(axes.xaxis)
         axes.grid(axis="x", which="major")
         rows(axes, [trial.point.label for trial in ordered])
         axes.set_xlabel("intersection tests a ray (a rasterised camera ray costs none)")
@@ -152,7 +151,7 @@ def _levels(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
                 label = trial.point.label if axes is panels[0] else None
                 axes.plot(range(len(levels)), levels, color=palette(index), label=label, **style)
             axes.set(title=kind, yscale="log", xlabel="level, 0: the roots")
-            axes.yaxis.set_major_formatter(lambda value, _: short(value))
+            log_ticks(axes.yaxis)
             axes.set_xlim(-0.4, deepest - 0.6)
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             axes.grid()

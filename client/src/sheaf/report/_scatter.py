@@ -11,12 +11,12 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
 
-from ._canvas import ACCENT, Theme, short
+from ._canvas import ACCENT, Theme
 from ._errors import Errors, pareto
 from ._measure import Trial
 from ._study import SceneStudy
+from ._ticks import log_ticks
 
 _MEASURES: tuple[tuple[str, Callable[[Errors], float | None]], ...] = (
     ("RMSE", lambda errors: errors.rmse),
@@ -57,10 +57,8 @@ def _panel(axes: Axes, scene: SceneStudy, cost: str, measure: Callable[[Errors],
             points.append((x, max(y, _LEAST), trial))
     axes.set(xscale="log", yscale="log")
     axes.grid(which="major")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_minor_formatter(NullFormatter())
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(lambda value, _: short(value))
+    log_ticks(axes.xaxis)
+    log_ticks(axes.yaxis)
     if not points:
         axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color=theme.quiet)
         return
