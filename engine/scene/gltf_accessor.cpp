@@ -103,22 +103,14 @@ Accessors::Source Accessors::window(const std::string& place, int view_index, st
                                     std::size_t element, std::size_t component) const {
   const auto slot = static_cast<std::size_t>(view_index);
   const tinygltf::BufferView& view = file_.model.bufferViews[slot];
-  const std::uint8_t* bytes = nullptr;
-  std::uint64_t length = 0, start = 0;
-  if (slot < file_.decoded_views.size() && !file_.decoded_views[slot].empty()) {
-    bytes = file_.decoded_views[slot].data();
-    length = file_.decoded_views[slot].size();
-  } else {
-    // The schema check compared the view with the buffer's declared length, and tinygltf that with its bytes.
-    const tinygltf::Buffer& buffer = file_.model.buffers[static_cast<std::size_t>(view.buffer)];
-    if (view.byteOffset > buffer.data.size() || view.byteLength > buffer.data.size() - view.byteOffset) {
-      file_.fail(at("bufferViews", slot), "lies outside its buffer");
-    }
-    bytes = buffer.data.data() + view.byteOffset;
-    length = view.byteLength;
-    start = view.byteOffset;
+  // The schema check compared the view with the buffer's declared length, and tinygltf that with its bytes.
+  const tinygltf::Buffer& buffer = file_.model.buffers[static_cast<std::size_t>(view.buffer)];
+  if (view.byteOffset > buffer.data.size() || view.byteLength > buffer.data.size() - view.byteOffset) {
+    file_.fail(at("bufferViews", slot), "lies outside its buffer");
   }
-  if ((start + offset) % component != 0) {
+  const std::uint8_t* bytes = buffer.data.data() + view.byteOffset;
+  const std::uint64_t length = view.byteLength;
+  if ((view.byteOffset + offset) % component != 0) {
     file_.fail(place, "its data is not aligned to " + std::to_string(component) + " bytes");
   }
   const std::uint64_t stride = view.byteStride == 0 ? element : view.byteStride;

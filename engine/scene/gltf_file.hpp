@@ -21,7 +21,6 @@ struct GltfFile {
   std::string sha256;
   nlohmann::json json;    // the same document as `model`: what tinygltf does not read (extensions) is read from here
   tinygltf::Model model;  // images hold their encoded bytes
-  std::vector<std::vector<std::uint8_t>> decoded_views;  // a bufferView: its bytes where an extension compressed them
   std::vector<std::string> warnings;
   std::vector<std::string> extensions_ignored;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/quote.hpp"
 #include "util/log.hpp"
 
 namespace sheaf::server {
@@ -16,7 +17,8 @@ Reply problem_reply(const Problem& problem, const std::string& instance) {
   reply.status = problem.status();
   reply.refusal = problem.slug();
   reply.content_type = "application/problem+json";
-  reply.body = problem.body(instance).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  reply.body =
+      problem.body(quote(instance)).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   reply.headers = problem.headers();
   reply.header("Cache-Control", "no-store");
   return reply;

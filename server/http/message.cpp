@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 
 namespace sheaf::server {
@@ -37,9 +38,9 @@ void Request::allow_arguments(std::initializer_list<std::string_view> names) con
   std::set<std::string_view> seen;
   for (const auto& [key, value] : query) {
     if (std::ranges::find(names, key) == names.end())
-      throw Problem(ProblemKind::malformed_request, "query: unknown argument '" + key + "'");
+      throw Problem(ProblemKind::malformed_request, "query: unknown argument '" + quote(key) + "'");
     if (!seen.insert(key).second)
-      throw Problem(ProblemKind::malformed_request, "query: argument '" + key + "' is given twice");
+      throw Problem(ProblemKind::malformed_request, "query: argument '" + quote(key) + "' is given twice");
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "http/problem.hpp"
 
+#include "core/quote.hpp"
+
 namespace sheaf::server {
 namespace {
 
@@ -84,6 +86,13 @@ Row row_of(ProblemKind kind) {
 }  // namespace
 
 Problem::Problem(ProblemKind kind, std::string detail) : kind_(kind), detail_(std::move(detail)) {}
+
+Problem& Problem::at(std::string_view key) {
+  if (quote(key) != key) return *this;
+  std::string pointer = "/";
+  for (const char c : key) pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return member("pointer", std::move(pointer));
+}
 
 int Problem::status() const { return row_of(kind_).status; }
 

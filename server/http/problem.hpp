@@ -6,6 +6,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -63,6 +64,9 @@ class Problem : public std::exception {
     members_[name] = std::move(value);
     return *this;
   }
+
+  /// The setting that is meant, as a JSON pointer (RFC 6901); left out where the key is too long to repeat.
+  Problem& at(std::string_view key);
 
   /// The limit that was passed: its option without the dashes, what it allows, and what came, or would have at least.
   Problem& passed(const char* name, std::uint64_t limit, std::uint64_t value) {

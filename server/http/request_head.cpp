@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 
 namespace sheaf::server {
@@ -32,6 +33,45 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_host_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || is_digit(c) ||
+         std::string_view("-._~%!$&'()*+,;=").find(c) != std::string_view::npos;
+}
+
+/// HOST or HOST:PORT (RFC 3986, 3.2.2 and 3.2.3), without user information.
+bool is_host_and_port(std::string_view text) {
+  std::string_view host = text.substr(0, text.rfind(':'));
+  if (text.starts_with('[')) {
+    const auto close = text.find(']');
+    if (close == std::string_view::npos || close < 2) return false;
+    host = text.substr(0, close + 1);
+    if (!std::ranges::all_of(host.substr(1, close - 1), [](char c) { return c == ':' || is_host_character(c); }))
+      return false;
+  } else if (!std::ranges::all_of(host, is_host_character)) {
+    return false;
+  }
+  const std::string_view port = text.substr(host.size());
+  return !host.empty() && (port.empty() || (port.front() == ':' && std::ranges::all_of(port.substr(1), is_digit)));
+}
+
+/// The path and query of a target in absolute form, which a server must accept (RFC 9112, 3.2.2). A path that is not
+/// there is "/", for OPTIONS "*" (3.2.4). Behind a proxy that ends TLS the scheme may be https.
+std::string origin_form(std::string_view target, std::string_view method) {
+  const auto colon = target.find("://");
+  if (colon == std::string_view::npos) malformed("the request target is not a path");
+  const std::string_view scheme = target.substr(0, colon);
+  if (!equal_ignoring_case(scheme, "http") && !equal_ignoring_case(scheme, "https"))
+    malformed("the request target's scheme is neither http nor https");
+  const std::string_view rest = target.substr(colon + 3);
+  const auto end = std::min(rest.find_first_of("/?"), rest.size());
+  if (!is_host_and_port(rest.substr(0, end))) malformed("the request target's host is not HOST or HOST:PORT");
+  const std::string_view path = rest.substr(end);
+  if (path.empty() && method == "OPTIONS") return "*";
+  return (path.starts_with('/') ? "" : "/") + std::string(path);
+}
+
 void parse_start_line(std::string_view line, const HeadLimits& limits, RequestHead& head) {
   const auto first = line.find(' ');
   const auto last = line.rfind(' ');
@@ -47,6 +87,8 @@ void parse_start_line(std::string_view line, const HeadLimits& limits, RequestHe
                                                  " bytes, the limit is " + std::to_string(limits.target));
   if (std::ranges::any_of(head.target, [](char c) { return static_cast<unsigned char>(c) <= 32 || c == 127; }))
     malformed("the request target holds a space or control character");
+  const bool whole_server = head.target == "*" && head.method == "OPTIONS";
+  if (!head.target.starts_with('/') && !whole_server) head.target = origin_form(head.target, head.method);
 }
 
 std::uint64_t parse_length(std::string_view text) {
@@ -69,6 +111,7 @@ void find_framing(RequestHead& head) {
       if (!equal_ignoring_case(value, "chunked")) malformed("Transfer-Encoding other than chunked is not supported");
     } else if (equal_ignoring_case(name, "Host")) {
       ++hosts;
+      if (!value.empty() && !is_host_and_port(value)) malformed("Host is not HOST or HOST:PORT");
     } else if (equal_ignoring_case(name, "Connection")) {
       if (equal_ignoring_case(value, "close")) head.keep_alive = false;
     } else if (equal_ignoring_case(name, "Expect")) {
@@ -123,7 +166,7 @@ RequestHead parse_request_head(std::string_view text, const HeadLimits& limits) 
     if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
       malformed("a header line is not NAME: VALUE");
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (!is_field_text(value)) malformed("header " + std::string(line.substr(0, colon)) + " holds a control character");
+    if (!is_field_text(value)) malformed("header " + quote(line.substr(0, colon)) + " holds a control character");
     head.headers.emplace_back(line.substr(0, colon), value);
   }
   if (head.http_1_0) head.keep_alive = false;
@@ -132,7 +175,9 @@ RequestHead parse_request_head(std::string_view text, const HeadLimits& limits) 
 }
 
 void split_target(std::string_view target, std::string& path, std::vector<std::pair<std::string, std::string>>& query) {
-  if (target.empty() || target.front() != '/') malformed("the request target is not a path");
+  path = target;
+  if (target == "*") return;
+  if (!target.starts_with('/')) malformed("the request target is not a path");
   const auto mark = target.find('?');
   path = percent_decoded(target.substr(0, mark), false);
   if (mark == std::string_view::npos) return;

@@ -22,7 +22,8 @@ struct HeadLimits {
 enum class BodyFraming { none, length, chunked };
 
 struct RequestHead {
-  std::string method, target;
+  std::string method;
+  std::string target;  // path and query; the host of an absolute target is taken off. "*" for OPTIONS alone
   bool http_1_0 = false;
   Headers headers;
   BodyFraming framing = BodyFraming::none;
@@ -34,7 +35,8 @@ struct RequestHead {
 /// `text` ends with the blank line. Throws Problem: 400, 414, 431.
 [[nodiscard]] RequestHead parse_request_head(std::string_view text, const HeadLimits& limits);
 
-/// Target into decoded path and query. Throws Problem 400: bad escapes, control characters, not starting with '/'.
+/// Target into decoded path and query. Throws Problem 400: bad escapes, control characters, not starting with '/'. "*"
+/// is itself.
 void split_target(std::string_view target, std::string& path, std::vector<std::pair<std::string, std::string>>& query);
 
 }  // namespace sheaf::server

@@ -5,6 +5,7 @@
 #include <array>
 #include <set>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 
 namespace sheaf::server {
@@ -18,6 +19,20 @@ std::vector<std::string> split_path(const std::string& path) {
     at = end + 1;
   }
   return segments;
+}
+
+std::string allow_list(std::set<std::string> methods) {
+  if (methods.contains("GET")) methods.insert("HEAD");
+  methods.insert("OPTIONS");
+  std::string list;
+  for (const std::string& name : methods) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+Reply options_reply(const std::set<std::string>& methods) {
+  Reply reply;
+  reply.status = 204;
+  return reply.header("Allow", allow_list(methods));
 }
 
 }  // namespace
@@ -57,10 +72,14 @@ Reply Router::dispatch(Request& request) const {
   static constexpr std::array known{"GET",     "HEAD",  "POST",  "PUT",     "DELETE",
                                     "OPTIONS", "PATCH", "TRACE", "CONNECT", "QUERY"};
   if (std::ranges::find(known, request.method) == known.end())
-    throw Problem(ProblemKind::not_implemented, "method " + request.method + " is not known");
+    throw Problem(ProblemKind::not_implemented, "method " + quote(request.method) + " is not known");
+  std::set<std::string> allowed;
+  if (request.path == "*") {  // the whole server, of which only OPTIONS asks
+    for (const Route& route : routes_) allowed.insert(route.method);
+    return options_reply(allowed);
+  }
   const std::vector<std::string> segments = split_path(request.path);
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
-  std::set<std::string> allowed;
   for (const Route& route : routes_) {
     std::map<std::string, std::string> parameters;
     if (!matches(route, segments, parameters)) continue;
@@ -69,20 +88,12 @@ Reply Router::dispatch(Request& request) const {
       return route.handler(request);
     }
     allowed.insert(route.method);
-    if (route.method == "GET") allowed.insert("HEAD");
   }
-  if (allowed.empty()) throw Problem(ProblemKind::unknown_route, "nothing is at " + request.path);
+  if (allowed.empty()) throw Problem(ProblemKind::unknown_route, "nothing is at " + quote(request.path));
 
-  allowed.insert("OPTIONS");
-  std::string list;
-  for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
-  if (request.method == "OPTIONS") {
-    Reply reply;
-    reply.status = 204;
-    return reply.header("Allow", list);
-  }
-  throw Problem(ProblemKind::method_not_allowed, request.method + " is not allowed at " + request.path)
-      .header("Allow", list);
+  if (request.method == "OPTIONS") return options_reply(allowed);
+  throw Problem(ProblemKind::method_not_allowed, quote(request.method) + " is not allowed at " + quote(request.path))
+      .header("Allow", allow_list(allowed));
 }
 
 std::vector<std::string> Router::routes() const {

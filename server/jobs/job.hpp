@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A job as the service knows it: plain data. Everything a client is shown is made from it in job_json.cpp.
+// A job as the service knows it: plain data. Everything a client is shown is made from it in job.cpp.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 #include "jobs/frame_collection.hpp"
 #include "jobs/outcome.hpp"
@@ -176,7 +177,7 @@ Submitted JobService::submit(Job job, const Idempotency& idempotency, const std:
 void JobService::refuse_missing(const std::string& id) const {
   if (store_.presence(id) == Presence::removed)
     throw Problem(ProblemKind::job_removed, "job " + id + " " + store_.removal_reason(id));
-  throw Problem(ProblemKind::unknown_job, "there is no job '" + id + "'");
+  throw Problem(ProblemKind::unknown_job, "there is no job '" + quote(id) + "'");
 }
 
 Job JobService::get(const std::string& id) const {

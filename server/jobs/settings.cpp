@@ -15,7 +15,7 @@ using nlohmann::json;
 
 [[noreturn]] void refuse(std::string_view key, const std::string& reason) {
   throw Problem(ProblemKind::bad_settings, "settings." + quote(key) + ": " + reason)
-      .member("pointer", "/" + std::string(key));
+      .at(key);
 }
 
 void refuse_unknown(const json& given) {
@@ -36,7 +36,7 @@ void hold_against_limit(const Given& given, const RenderOptions& options, const 
   if (value > most)
     throw Problem(ProblemKind::limit_exceeded, "settings." + std::string(key) + ": " + std::to_string(value) + " " +
                                                    limit->of + ", the limit is " + std::to_string(most))
-        .member("pointer", "/" + std::string(key))
+        .at(key)
         .passed(limit->name, most, value);
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 #include "routes/routes.hpp"
 #include "upload/submission.hpp"
@@ -32,8 +33,8 @@ Reply submit(RouteContext& context, Request& request) {
   const Submitted submitted =
       context.service.submit(std::move(submission.job), {key, submission.fingerprint}, request.id);
   if (submitted.kind == Submitted::Kind::conflict)
-    throw Problem(ProblemKind::idempotency_mismatch, "Idempotency-Key '" + key + "' belongs to job " + submitted.id +
-                                                         ", which was submitted with another body");
+    throw Problem(ProblemKind::idempotency_mismatch, "Idempotency-Key '" + quote(key) + "' belongs to job " +
+                                                         submitted.id + ", which was submitted with another body");
   Reply reply = json_reply(202, job_to_json(context.service.get(submitted.id)));
   if (submitted.kind == Submitted::Kind::repeated) reply.header("Idempotent-Replayed", "true");
   return reply.header("Location", "/v1/jobs/" + submitted.id);

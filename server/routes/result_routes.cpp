@@ -3,6 +3,7 @@
 
 #include <charconv>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 #include "routes/file_reply.hpp"
 #include "routes/routes.hpp"
@@ -25,10 +26,10 @@ const Frame& rendered_frame(const Job& job, const std::string& text) {
   const bool may_come = !is_finished(job.state) && (frame || (valid && !job.frames_known));
   if (may_come)
     throw Problem(ProblemKind::not_rendered,
-                  "frame " + text + " is not rendered yet; the job is " + std::string(name_of(job.state)))
+                  "frame " + quote(text) + " is not rendered yet; the job is " + std::string(name_of(job.state)))
         .header("Retry-After", "1");
-  if (frame) throw Problem(ProblemKind::not_produced, "the job ended without frame " + text);
-  throw Problem(ProblemKind::unknown_frame, "the job has no frame '" + text + "'");
+  if (frame) throw Problem(ProblemKind::not_produced, "the job ended without frame " + quote(text));
+  throw Problem(ProblemKind::unknown_frame, "the job has no frame '" + quote(text) + "'");
 }
 
 Reply frame_exr(RouteContext& context, Request& request) {

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "core/quote.hpp"
 #include "http/message.hpp"
 #include "http/problem.hpp"
 
@@ -63,7 +64,7 @@ std::map<std::string, std::string> parameters_of(std::string_view text) {
       value = trimmed(text.substr(0, end));
       text.remove_prefix(end);
     }
-    if (!parameters.emplace(name, value).second) malformed("parameter " + name + " is given twice");
+    if (!parameters.emplace(name, value).second) malformed("parameter " + quote(name) + " is given twice");
   }
 }
 

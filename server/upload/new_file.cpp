@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 
 namespace sheaf::server {
@@ -20,8 +21,8 @@ NewFile::NewFile(const std::filesystem::path& folder, const std::filesystem::pat
   const int reason = error ? error.value() : errno;
   // The folder holds only what this client sent: a clash is one of its own names.
   if (reason == EEXIST || reason == ENOTDIR || reason == EISDIR)
-    throw Problem(ProblemKind::bad_scene, "file name '" + name_ + "': is given twice");
-  throw io_error(name_, std::strerror(reason));
+    throw Problem(ProblemKind::bad_scene, "file name '" + quote(name_) + "': is given twice");
+  throw io_error(quote(name_), std::strerror(reason));
 }
 
 void NewFile::write(std::string_view bytes) {
@@ -29,13 +30,13 @@ void NewFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd_.get(), bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw io_error(name_, std::strerror(errno));
+    if (n < 0) throw io_error(quote(name_), std::strerror(errno));
     bytes.remove_prefix(static_cast<std::size_t>(n));
   }
 }
 
 void NewFile::close() {
-  if (::close(fd_.release()) != 0) throw io_error(name_, std::strerror(errno));
+  if (::close(fd_.release()) != 0) throw io_error(quote(name_), std::strerror(errno));
 }
 
 }  // namespace sheaf::server

@@ -7,8 +7,9 @@
 
 namespace sheaf::server {
 
-/// A client's relative path ("textures/wood.png") that stays inside the folder it is put in. Throws Problem (422) for
-/// an absolute one, "..", ".", backslashes, control characters, empty or overlong parts.
+/// A client's relative path ("textures/wood.png") that stays inside the folder it is put in. A backslash separates as
+/// '/' does, and "." is left out. Throws Problem (422) for an absolute one, a drive, "..", control characters, empty or
+/// overlong parts.
 [[nodiscard]] std::filesystem::path safe_relative_path(std::string_view given);
 
 /// The last part alone: some clients send their whole path.

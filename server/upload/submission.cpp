@@ -4,8 +4,10 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <set>
 #include <vector>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
 #include "jobs/settings.hpp"
 #include "upload/content_digest.hpp"
@@ -32,8 +34,17 @@ std::string scene_name(const PartHeader& part) {
   const std::string extension = extension_of(name);
   if (extension != ".glb" && extension != ".gltf" && extension != ".zip")
     throw Problem(ProblemKind::unsupported_media_type,
-                  "scene: '" + (name.empty() ? part.content_type : name) + "' is not .glb, .gltf or .zip");
+                  "scene: '" + quote(name.empty() ? part.content_type : name) + "' is not .glb, .gltf or .zip");
   return safe_relative_path(name).string();
+}
+
+/// The folder in the client's name for the scene, where it has one that can be made here.
+std::filesystem::path scene_folder(const PartHeader& part) {
+  try {
+    return safe_relative_path(part.filename.value_or("")).parent_path();
+  } catch (const Problem&) {
+    return {};  // a path of the client's machine: its last part names the scene
+  }
 }
 
 class Receiver {
@@ -47,11 +58,14 @@ class Receiver {
     if (part.name == "scene") {
       if (!scene_name_.empty()) twice();
       scene_name_ = scene_name(part);
+      scene_folder_ = scene_folder(part);
       const bool zip = extension_of(scene_name_) == ".zip";
       file_.emplace(zip ? folder_ : folder_ / "scene", zip ? "upload.zip" : scene_name_);
     } else if (part.name == "file") {
       if (!part.filename) throw Problem(ProblemKind::malformed_multipart, "part 'file' has no file name");
-      file_.emplace(folder_ / "scene", safe_relative_path(*part.filename));
+      const std::filesystem::path path = safe_relative_path(*part.filename);
+      file_.emplace(folder_ / "scene", path);
+      tops_.insert(path.has_parent_path() ? *path.begin() : std::filesystem::path());
     } else if (part.name == "camera") {
       if (camera_) twice();
       text_limit_ = limits_.camera_bytes;
@@ -60,7 +74,7 @@ class Receiver {
       text_limit_ = limits_.settings_bytes;
     } else {
       throw Problem(ProblemKind::malformed_multipart,
-                    "part '" + part.name.substr(0, 100) + "' is not one of scene, file, camera, settings");
+                    "part '" + quote(part.name) + "' is not one of scene, file, camera, settings");
     }
   }
 
@@ -79,7 +93,6 @@ class Receiver {
     if (file_) {
       file_->close();
       total_bytes_ += file_->bytes();
-      has_files_ = has_files_ || part_.name == "file";
       file_.reset();
     } else if (part_.name == "camera") {
       camera_ = std::move(text_);
@@ -118,7 +131,7 @@ class Receiver {
     try {
       return nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception& error) {
-      throw Problem(ProblemKind::malformed_json, what + ": " + error.what());
+      throw Problem(ProblemKind::malformed_json, what + ": " + quote(error.what()));
     }
   }
 
@@ -135,14 +148,28 @@ class Receiver {
   std::string unpack_scene() {
     if (scene_name_.empty()) bad_scene("there is no scene part");
     const std::string extension = extension_of(scene_name_);
-    if (extension == ".glb" && magic_ != "glTF") bad_scene("scene: '" + scene_name_ + "' is not a binary glTF file");
-    if (extension == ".gltf" && magic_.empty()) bad_scene("scene: '" + scene_name_ + "' is empty");
-    if (extension != ".zip") return scene_name_;
-    if (has_files_) bad_scene("file: parts beside a .zip scene are not taken");
+    if (extension == ".glb" && magic_ != "glTF")
+      bad_scene("scene: '" + quote(scene_name_) + "' is not a binary glTF file");
+    if (extension == ".gltf" && magic_.empty()) bad_scene("scene: '" + quote(scene_name_) + "' is empty");
+    if (extension != ".zip") return beside_files();
+    if (!tops_.empty()) bad_scene("file: parts beside a .zip scene are not taken");
     const auto archive = folder_ / "upload.zip";
-    const std::string name = unzip_scene(archive, folder_ / "scene", limits_);
+    const std::string name = unzip_scene(archive, folder_ / "scene", limits_).string();
     std::filesystem::remove(archive);
     return name;
+  }
+
+  /// A folder that is sent as a whole names the scene and its files from where it lies ("model/a.gltf", "model/a.bin"):
+  /// the scene then goes into that folder. Files that are named otherwise are named from the scene on.
+  std::string beside_files() const {
+    if (tops_.size() != 1 || scene_folder_.empty() || *tops_.begin() != *scene_folder_.begin()) return scene_name_;
+    const std::filesystem::path scenes = folder_ / "scene", name = scene_folder_ / scene_name_;
+    std::error_code error;
+    std::filesystem::create_directories(scenes / scene_folder_, error);
+    if (error || std::filesystem::exists(scenes / name))
+      bad_scene("file name '" + quote(name.string()) + "': is given twice");
+    std::filesystem::rename(scenes / scene_name_, scenes / name);
+    return name.string();
   }
 
   std::filesystem::path folder_;
@@ -151,9 +178,10 @@ class Receiver {
   Sha256 part_hash_, fingerprint_;
   std::optional<NewFile> file_;
   std::string scene_name_, magic_, text_;
+  std::filesystem::path scene_folder_;
+  std::set<std::filesystem::path> tops_;  // first folders of the files' names; empty: no folder
   std::uint64_t text_limit_ = 0, total_bytes_ = 0;
   std::optional<std::string> camera_, settings_;
-  bool has_files_ = false;
 };
 
 void read_all(Request& request, const std::function<void(std::string_view)>& take) {

@@ -7,9 +7,13 @@
 #include <array>
 #include <cstring>
 #include <memory>
-#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "core/quote.hpp"
 #include "http/problem.hpp"
+#include "upload/archive_names.hpp"
 #include "upload/new_file.hpp"
 #include "upload/safe_path.hpp"
 
@@ -37,7 +41,7 @@ class Unzipper {
     if (!zip_) refuse("this is not a zip archive");
   }
 
-  std::string run() {
+  std::filesystem::path run() {
     unz_global_info64 info{};
     if (::unzGetGlobalInfo64(zip_.get(), &info) != UNZ_OK) refuse("the directory cannot be read");
     if (info.number_entry > limits_.zip_entries)
@@ -47,7 +51,7 @@ class Unzipper {
       if (moved != UNZ_OK) refuse("the directory is damaged");
       unpack_entry();
     }
-    return only_scene();
+    return only_scene(std::move(scenes_));
   }
 
  private:
@@ -59,30 +63,37 @@ class Unzipper {
     if (info.size_filename > max_name || std::strlen(text.data()) != info.size_filename)
       refuse("an entry's name is longer than 1024 bytes or holds a zero");
     const std::string name = text.data();
+    if (is_file_managers(name) || is_folder(name, info)) return;  // folders are made for the files in them
+    const auto refuse_entry = [&](const char* why) { refuse("entry '" + quote(name) + "' " + why); };
     const auto mode = static_cast<mode_t>(info.external_fa >> 16);
-    if (S_ISLNK(mode)) refuse("entry '" + name + "' is a link");
-    if (info.flag & 1) refuse("entry '" + name + "' is encrypted");
-    if (name.ends_with('/')) return;  // folders are made for the files in them
+    if (S_ISLNK(mode)) refuse_entry("is a link");
+    if (info.flag & 1) refuse_entry("is encrypted");
     if (info.compression_method != 0 && info.compression_method != Z_DEFLATED)
-      refuse("entry '" + name + "' is neither stored nor deflated");
+      refuse_entry("is neither stored nor deflated");
     unpack_file(name);
+  }
+
+  static bool is_folder(const std::string& name, const unz_file_info64& info) {
+    constexpr unsigned long dos_folder = 0x10;
+    if (name.ends_with('/') || name.ends_with('\\')) return true;
+    return info.uncompressed_size == 0 && (info.external_fa & dos_folder) != 0;
   }
 
   void unpack_file(const std::string& name) {
     const std::filesystem::path path = safe_relative_path(name);
+    const std::string shown = "entry '" + quote(name) + "' ";
     NewFile file(folder_, path);
-    if (::unzOpenCurrentFile(zip_.get()) != UNZ_OK) refuse("entry '" + name + "' cannot be read");
+    if (::unzOpenCurrentFile(zip_.get()) != UNZ_OK) refuse(shown + "cannot be read");
     while (true) {
       const int n = ::unzReadCurrentFile(zip_.get(), block_.data(), static_cast<unsigned>(block_.size()));
-      if (n < 0) refuse("entry '" + name + "' is damaged");
+      if (n < 0) refuse(shown + "is damaged");
       if (n == 0) break;
       count(static_cast<std::uint64_t>(n));
       file.write({block_.data(), static_cast<std::size_t>(n)});
     }
-    if (::unzCloseCurrentFile(zip_.get()) != UNZ_OK) refuse("entry '" + name + "' fails its checksum");
+    if (::unzCloseCurrentFile(zip_.get()) != UNZ_OK) refuse(shown + "fails its checksum");
     file.close();
-    const std::string extension = extension_of(name);
-    if (!path.has_parent_path() && (extension == ".glb" || extension == ".gltf")) scenes_.insert(name);
+    if (is_scene_name(path)) scenes_.push_back(path);
   }
 
   void count(std::uint64_t bytes) {
@@ -94,25 +105,18 @@ class Unzipper {
                 unpacked_ / std::max<std::uint64_t>(packed_, 1), limits_.zip_ratio);
   }
 
-  std::string only_scene() const {
-    if (scenes_.empty()) refuse("there is no .glb or .gltf at its top");
-    if (scenes_.size() > 1)
-      refuse("there are several scenes at its top: '" + *scenes_.begin() + "', '" + *std::next(scenes_.begin()) + "'");
-    return *scenes_.begin();
-  }
-
   std::unique_ptr<void, decltype(&::unzClose)> zip_;
   std::filesystem::path folder_;
   const Limits& limits_;
   std::uint64_t packed_, unpacked_ = 0;
-  std::set<std::string> scenes_;
+  std::vector<std::filesystem::path> scenes_;
   std::array<char, 1 << 16> block_{};
 };
 
 }  // namespace
 
-std::string unzip_scene(const std::filesystem::path& archive, const std::filesystem::path& folder,
-                        const Limits& limits) {
+std::filesystem::path unzip_scene(const std::filesystem::path& archive, const std::filesystem::path& folder,
+                                  const Limits& limits) {
   return std::make_unique<Unzipper>(archive, folder, limits)->run();
 }
 

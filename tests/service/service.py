@@ -46,7 +46,7 @@ class Service:
         self.data = data
         free = [] if "--min-free" in options else ["--min-free", "0"]  # whatever the machine's disk
         # The fake worker is a Python program, and keeps ledgers and gates beside the service's data.
-        places = readable or [sys.base_prefix, HERE, data.parent]
+        places = readable or [sys.base_prefix, sys.prefix, HERE, data.parent]
         seen = [word for place in places for word in ("--worker-reads", str(place))]
         self.process = subprocess.Popen(
             [*(prefix or []), program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf]

@@ -8,6 +8,7 @@ import socket
 import subprocess
 from collections.abc import Callable
 
+import httpx
 import pytest
 from service import Service, check_problem, gltf, program
 
@@ -79,7 +80,17 @@ def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
         (b"GET / HTTP/1.1\r\nHost: a\r\nX: \x00\r\n\r\n", 400),
         (b"GET /%zz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
         (b"GET /%00 HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
-        (b"GET http://a/ HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+        (b"GET http:///healthz HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET http://me@a/healthz HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET http://a:b/healthz HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET http://a/%zz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n", 400),
+        (b"GET http://a/healthz HTTP/1.1\r\n\r\n", 400),
+        (b"GET http://a/healthz HTTP/1.1\r\nHost: a\r\nHost: a\r\n\r\n", 400),
+        (b"GET ftp://a/healthz HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET a/healthz HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET * HTTP/1.1\r\nHost: a\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a/b\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nHost: a b\r\n\r\n", 400),
         (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n", 400),
         (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400),
         (b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n", 400),
@@ -96,6 +107,45 @@ def test_malformed_heads(sheafd: Service, request_bytes: bytes, status: int) -> 
     assert status_of(answer) == status
     assert problem_of(answer)["status"] == status
     assert sheafd.http.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("target", "host", "status"),
+    [
+        (b"http://a/healthz", b"a", 200),
+        (b"HTTP://A:8080/healthz", b"a:8080", 200),
+        (b"https://farm.example.org:/healthz", b"farm.example.org", 200),
+        (b"http://[::1]:8080/healthz", b"[::1]:8080", 200),
+        (b"http://a/healthz", b"another", 200),  # the target's host holds, and any is served
+        (b"http://a/healthz", b"", 200),
+        (b"http://a", b"a", 200),
+        (b"http://a/v1/jobs?limit=1", b"a", 200),
+        (b"http://a?limit=1", b"a", 400),  # the page takes no arguments
+        (b"http://a/v1/jobs?limit=0", b"a", 400),
+        (b"http://a/nope", b"a", 404),
+    ],
+)
+def test_targets_in_absolute_form(sheafd: Service, target: bytes, host: bytes, status: int) -> None:
+    """As clients send them to what they take for a proxy (RFC 9112, 3.2.2)."""
+    answer = sheafd.raw(b"GET " + target + b" HTTP/1.1\r\nHost: " + host + b"\r\nConnection: close\r\n\r\n")
+    assert status_of(answer) == status
+    if status == 404:
+        assert problem_of(answer)["instance"] == "/nope"
+
+
+def test_a_client_that_takes_the_service_for_a_proxy(sheafd: Service) -> None:
+    with httpx.Client(proxy=sheafd.url) as client:
+        reply = client.post(sheafd.url + "/v1/jobs", files=[("scene", ("a.gltf", gltf()))])
+        assert reply.status_code == 202
+        assert reply.headers["Location"] == "/v1/jobs/" + reply.json()["id"]
+        assert client.get(sheafd.url + reply.headers["Location"]).json()["id"] == reply.json()["id"]
+    assert [entry for entry in sheafd.log if entry.get("path") == reply.headers["Location"]]
+
+
+def test_options_of_the_whole_service(sheafd: Service) -> None:
+    for target in b"*", b"http://a":
+        answer = sheafd.raw(b"OPTIONS " + target + b" HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n")
+        assert status_of(answer) == 204 and b"Allow: DELETE, GET, HEAD, OPTIONS, POST\r\n" in answer
 
 
 CHUNKED = (

@@ -138,6 +138,9 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
         ({"memory": 15}, "bad-settings", "/memory"),
         ({"camera": "path.json"}, "bad-settings", "/camera"),
         ({"z-background": "far"}, "bad-settings", "/z-background"),
+        ({"aov": "motion"}, "bad-settings", "/aov"),
+        ({"aov": ["Z", "z"]}, "bad-settings", "/aov"),
+        ({"aov": []}, "bad-settings", "/aov"),
         ({"name": "../frame.####.exr"}, "bad-settings", "/name"),
         ({"name": "frame.exr"}, "bad-settings", "/name"),
         ({"preview": "yes"}, "bad-settings", "/preview"),
@@ -163,6 +166,16 @@ def test_what_a_quality_stands_for_is_held_against_the_limits(start: Callable[..
     problem = check_problem(few.submit(gltf(), {"quality": "exact"}), 422, "limit-exceeded")
     assert (problem["pointer"], problem["limit_name"], problem["value"]) == ("/quality", "max-depth", 32)
     assert few.submit(gltf(), {"quality": "exact", "depth": 8}).status_code == 202  # what is given beside it counts
+def test_a_layer_that_there_is_not_is_refused_with_those_that_there_are(sheafd: Service) -> None:
+    problem = check_problem(sheafd.submit(gltf(), {"aov": "Z,motion"}), 422, "bad-settings")
+    assert "motion: there is Z, N, P, albedo, UV, id, tests, all" in problem["detail"]
+    for layers in "Z", "Z,N,P,albedo,UV,id,tests", "all", ["Z", "id"], ["all"]:
+        assert sheafd.submit(gltf(), {"aov": layers}).status_code == 202
+
+
+def test_a_key_in_a_pointer_is_escaped(sheafd: Service) -> None:
+    problem = check_problem(sheafd.submit(gltf(), {"a/b~c": 1}), 422, "bad-settings")
+    assert problem["pointer"] == "/a~1b~0c" and "settings.a/b~c: " in problem["detail"]
 
 
 def test_a_value_is_never_read_as_an_option(sheafd: Service) -> None:

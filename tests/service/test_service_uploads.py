@@ -73,7 +73,14 @@ def test_a_zipped_scene(sheafd: Service) -> None:
     "entries",
     [
         {"a.gltf": gltf(), "b.glb": glb()},
-        {"dir/a.gltf": gltf()},
+        {"one/a.gltf": gltf(), "two/b.glb": glb()},
+        {"one/a.gltf": gltf(), "two/deeper/b.glb": glb()},
+        {"dir/a.bin": b"", "__MACOSX/a.gltf": gltf(), "dir/._a.gltf": gltf()},
+        {"dir\\..\\..\\a.gltf": gltf()},
+        {"C:\\models\\a.gltf": gltf()},
+        {"\\\\host\\share\\a.gltf": gltf()},
+        {"a.gltf": gltf(), "tex/b": b"1", "tex\\b": b"2"},
+        {"a.gltf": gltf(), "./a.gltf": gltf()},
         {"../a.gltf": gltf()},
         {"/a.gltf": gltf()},
         {"a.gltf": gltf(), "b/../../c": b""},
@@ -85,6 +92,64 @@ def test_a_zipped_scene(sheafd: Service) -> None:
 def test_bad_archives(sheafd: Service, entries: dict[str, bytes]) -> None:
     check_problem(sheafd.submit(archive(entries), name="s.zip"), 422, "bad-scene")
     assert not list((sheafd.data / "incoming").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("entries", "scene"),
+    [
+        ({"model/": b"", "model/a.gltf": gltf(), "model/tex/a.bin": b"1"}, "model/a.gltf"),
+        ({"for you/model/a.gltf": gltf(), "for you/model/tex/a.bin": b"1"}, "for you/model/a.gltf"),
+        ({"a.gltf": gltf(), "tex\\a.bin": b"1"}, "a.gltf"),
+        ({"model\\": b"", "model\\a.gltf": gltf(), "model\\tex\\a.bin": b"1"}, "model/a.gltf"),
+        ({"./model/a.gltf": gltf(), "./model/tex/a.bin": b"1"}, "model/a.gltf"),
+        (
+            {
+                "model/a.gltf": gltf(),
+                "model/tex/a.bin": b"1",
+                "model/.DS_Store": b"?",
+                "model/Icon\r": b"",
+                "__MACOSX/model/._a.gltf": b"?",
+                "__MACOSX/._model": b"?",
+            },
+            "model/a.gltf",
+        ),
+        ({"model/a.gltf": gltf(), "model/tex/a.bin": b"1", "model/old/b.gltf": gltf(), "model/old/c.glb": b""}, "model/a.gltf"),
+        ({"source/a.GLTF": gltf(), "source/tex/a.bin": b"1", "textures/b.png": b"2"}, "source/a.GLTF"),
+    ],
+)
+def test_archives_as_people_make_them(sheafd: Service, entries: dict[str, bytes], scene: str) -> None:
+    job = sheafd.wait(sheafd.accepted(archive(entries), {"frames": 0}, name="s.zip"))
+    assert job["state"] == "done", job
+    assert job["scene"]["name"] == scene
+    folder = sheafd.data / "jobs" / job["id"] / "scene"
+    assert ((folder / scene).parent / "tex" / "a.bin").read_bytes() == b"1"
+    left = [str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()]
+    assert not [name for name in left if "MACOSX" in name or "._" in name or "DS_Store" in name or "Icon" in name]
+
+
+def test_a_folder_that_is_sent_as_parts(sheafd: Service) -> None:
+    """Names as a page sends a folder that was chosen, from its parent on; in whatever order."""
+    for separator in "/", "\\":
+        name = separator.join(("model", "a.gltf"))
+        parts = [
+            ("file", (separator.join(("model", "tex", "a.bin")), b"1")),
+            ("scene", (name, gltf())),
+            ("file", (separator.join(("model", "b.bin")), b"2")),
+        ]
+        reply = sheafd.http.post("/v1/jobs", files=parts)
+        assert reply.status_code == 202, reply.text
+        assert reply.json()["scene"]["name"] == "model/a.gltf"
+        folder = sheafd.data / "jobs" / reply.json()["id"] / "scene" / "model"
+        assert sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()) == [
+            "a.gltf",
+            "b.bin",
+            "tex/a.bin",
+        ]
+    # Files that are named from the scene on stay beside it, whatever folder the scene came from.
+    apart = [("scene", ("models/a.gltf", gltf())), ("file", ("a.bin", b"1")), ("file", ("models/b.bin", b"2"))]
+    assert sheafd.http.post("/v1/jobs", files=apart).json()["scene"]["name"] == "a.gltf"
+    twice = [("scene", ("model/a.gltf", gltf())), ("file", ("model/a.gltf", gltf()))]
+    check_problem(sheafd.http.post("/v1/jobs", files=twice), 422, "bad-scene")
 
 
 def test_a_link_in_an_archive(sheafd: Service) -> None:
@@ -113,7 +178,7 @@ def test_archive_bombs(start: Callable[..., Service]) -> None:
     assert check_problem(service.submit(size, name="s.zip"), 413, "too-large")["limit"] == 8 << 20
 
 
-@pytest.mark.parametrize("name", ["../x.bin", "/etc/x", "a/../b", "a//b", "x\\y", "", ".", "a/" * 20 + "x", "n" * 300])
+@pytest.mark.parametrize("name", ["../x.bin", "/etc/x", "a/../b", "a//b", "x\\..\\y", "C:\\x", "\\x", "", ".", "a/" * 20 + "x", "n" * 300])
 def test_bad_file_names(sheafd: Service, name: str) -> None:
     body = (
         b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n'

@@ -60,6 +60,36 @@ TEST(RequestHead, KeepsConnectionsAsTheVersionSays) {
   EXPECT_FALSE(parse_request_head("GET / HTTP/1.0\r\n\r\n", HeadLimits{}).keep_alive);
 }
 
+std::string target_of(const std::string& method, const std::string& target, const std::string& host = "a") {
+  return parse_request_head(method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\n\r\n", HeadLimits{}).target;
+}
+
+TEST(RequestHead, TakesTheHostOffAnAbsoluteTarget) {
+  EXPECT_EQ(target_of("GET", "/a?b"), "/a?b");
+  EXPECT_EQ(target_of("GET", "http://a/b?c=http://d"), "/b?c=http://d");
+  EXPECT_EQ(target_of("GET", "https://a:443//b"), "//b");
+  EXPECT_EQ(target_of("GET", "hTTp://[::1]:80/b"), "/b");
+  EXPECT_EQ(target_of("GET", "http://a"), "/");
+  EXPECT_EQ(target_of("GET", "http://a?b"), "/?b");
+  EXPECT_EQ(target_of("POST", "http://a:"), "/");
+  EXPECT_EQ(target_of("OPTIONS", "http://a"), "*");
+  EXPECT_EQ(target_of("OPTIONS", "http://a/"), "/");
+  EXPECT_EQ(target_of("OPTIONS", "*"), "*");
+  EXPECT_EQ(target_of("GET", "http://another/b", "a"), "/b");
+  EXPECT_EQ(target_of("GET", "http://a/b", ""), "/b");
+  for (const char* target : {"*", "a", "a/b", "http:/a", "http:a", "http://", "http:///b", "http://:80/b", "http://u@a/b",
+                             "http://a:80:80/b", "http://a:x/b", "http://[::1/b", "http://[]/b", "http://[::1]x/b",
+                             "http://a\\b/c", "http://a#b", "ftp://a/b", "x http://a/b", "://a/b"})
+    EXPECT_EQ(status_of([&] { (void)target_of("GET", target); }), 400) << target;
+}
+
+TEST(RequestHead, WantsAHostThatIsOne) {
+  for (const char* host : {"", "a", "a:80", "a:", "127.0.0.1:8080", "[::1]", "[::1]:80", "my_host", "xn--4gbrim"})
+    EXPECT_EQ(status_of([&] { (void)target_of("GET", "/", host); }), 200) << host;
+  for (const char* host : {"a b", "a/b", "u@a", ":80", "a:x", "a:80:80", "[::1", "http://a", "a,b:c"})
+    EXPECT_EQ(status_of([&] { (void)target_of("GET", "/", host); }), 400) << host;
+}
+
 TEST(Target, IsDecodedOnce) {
   std::string path;
   std::vector<std::pair<std::string, std::string>> query;
@@ -67,7 +97,9 @@ TEST(Target, IsDecodedOnce) {
   EXPECT_EQ(path, "/a b/../c+d");
   const std::vector<std::pair<std::string, std::string>> expected{{"x", "1 2"}, {"y", "&"}, {"z", ""}, {"", ""}};
   EXPECT_EQ(query, expected);
-  for (const char* target : {"", "a", "*", "/%", "/%4", "/%g0", "/%00", "/?%0a", "http://a/"})
+  split_target("*", path, query);
+  EXPECT_EQ(path, "*");
+  for (const char* target : {"", "a", "*/", "/%", "/%4", "/%g0", "/%00", "/?%0a", "http://a/"})
     EXPECT_EQ(status_of([&] { split_target(target, path, query); }), 400) << target;
 }
 

@@ -2,10 +2,12 @@
 // Taking uploads apart: multipart bodies, file names.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "http/problem.hpp"
+#include "upload/archive_names.hpp"
 #include "upload/multipart.hpp"
 #include "upload/safe_path.hpp"
 
@@ -90,14 +92,37 @@ TEST(Multipart, FindsTheBoundary) {
 TEST(SafePath, StaysInsideItsFolder) {
   EXPECT_EQ(safe_relative_path("textures/wood grain.png"), "textures/wood grain.png");
   EXPECT_EQ(safe_relative_path("...x/..y"), "...x/..y");
+  EXPECT_EQ(safe_relative_path("textures\\wood.png"), "textures/wood.png");
+  EXPECT_EQ(safe_relative_path("./a/./b"), "a/b");
   for (const std::string& path :
-       std::vector<std::string>{"", "/", "/a", "a/", "a//b", ".", "..", "a/..", "../a", "a/./b", "a\\b", "a\nb",
+       std::vector<std::string>{"", "/", "/a", "a/", "a//b", ".", "./", "..", "a/..", "../a", "a\\..\\b", "\\a", "\\\\host\\a",
+                                "C:\\a", "c:/a", "c:a", "a\nb",
                                 std::string("a\0b", 3), "a\x7f", std::string(256, 'x'), std::string(2000, '/')})
     EXPECT_THROW((void)safe_relative_path(path), Problem) << path.substr(0, 50);
   std::string deep = "0";
   for (int i = 1; i < 16; ++i) deep += "/" + std::to_string(i);
   EXPECT_EQ(safe_relative_path(deep), deep);
   EXPECT_THROW((void)safe_relative_path(deep + "/16"), Problem);
+}
+
+TEST(Archives, LeaveOutWhatFileManagersAdd) {
+  for (const std::string& name :
+       std::vector<std::string>{"__MACOSX/model/._a.gltf", "__MACOSX/", "a/__MACOSX/b", "._a.gltf", "a/._b", "a\\._b",
+                                ".DS_Store", "a/.DS_Store", "a/Icon\r", "Thumbs.db", "a/thumbs.db", "a/Desktop.ini"})
+    EXPECT_TRUE(is_file_managers(name)) << name;
+  for (const std::string& name : std::vector<std::string>{"a.gltf", "a/", "", "MACOSX/a", "a_.gltf", "._a/b", "x.DS_Store",
+                                                          "__MACOSX", "icon", "_a"})
+    EXPECT_EQ(is_file_managers(name), name == "__MACOSX") << name;
+}
+
+TEST(Archives, HaveOneSceneWhoseFolderHoldsTheOthers) {
+  EXPECT_EQ(only_scene({"a.gltf"}), "a.gltf");
+  EXPECT_EQ(only_scene({"x/y/z/a.glb"}), "x/y/z/a.glb");
+  EXPECT_EQ(only_scene({"b/c.gltf", "a.gltf", "b/d.gltf"}), "a.gltf");
+  EXPECT_EQ(only_scene({"x/old/a.gltf", "x/a.gltf"}), "x/a.gltf");
+  for (const std::vector<std::filesystem::path>& scenes : std::vector<std::vector<std::filesystem::path>>{
+           {}, {"a.gltf", "a.glb"}, {"x/a.gltf", "y/a.gltf"}, {"x/a.gltf", "xy/z/a.gltf"}, {"x/a.gltf", "y/z/a.gltf"}})
+    EXPECT_THROW((void)only_scene(scenes), Problem);
 }
 
 TEST(SafePath, TakesNamesApart) {
