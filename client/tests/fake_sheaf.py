@@ -55,6 +55,7 @@ def parsed(arguments: list[str]) -> dict[str, str]:
 def render(scene: Path, out: Path, options: dict[str, str]) -> None:
     from sheaf._frames import parse_frames
 
+    options = QUALITIES.get(options.get("quality", ""), {}) | options
     out.mkdir(parents=True, exist_ok=True)
     frames = parse_frames(options.get("frames", "0"))
     moves = "still" not in scene.name

@@ -10,14 +10,14 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.figure import Figure
 
-from sheaf.report._canvas import THEMES, Theme, draw_png  # noqa: E402
-from sheaf.report._errors import Errors  # noqa: E402
-from sheaf.report._measure import Trial  # noqa: E402
-from sheaf.report._plan import Point  # noqa: E402
-from sheaf.report._scatter import scatter  # noqa: E402
-from sheaf.report._study import SceneStudy  # noqa: E402
+from sheaf.report._canvas import THEMES, Theme, draw_png
+from sheaf.report._errors import Errors
+from sheaf.report._measure import Trial
+from sheaf.report._plan import Point
+from sheaf.report._scatter import scatter
+from sheaf.report._study import SceneStudy
 
 SPANS = [
     (low, low * factor)

@@ -19,7 +19,7 @@ import fake_sheaf
 import numpy as np
 import pytest
 
-from sheaf._program import Outcome, Program, option_list
+from sheaf._program import Outcome, Program, find_program, option_list
 from sheaf.cli import main
 from sheaf.report import Study, StudyOptions, study, write_report, write_sample
 from sheaf.report._errors import compare, pareto
@@ -47,7 +47,7 @@ class Engine(Program):
         return Outcome(0, 0.1)
 
 
-ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}), ("draft", "production", "exact"))
+ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}), ("rough", "fine"))
 
 
 def found(options: StudyOptions = SMALL, scene: str = "report-moving.glb", **more: Any) -> dict[str, Any]:
@@ -110,6 +110,10 @@ def test_errors_fronts_and_named_settings() -> None:
     assert scene["strategies"][1]["pareto"]["tests"] is False  # the same error for more
 
 
+def test_the_program_says_which_settings_are_named() -> None:
+    assert find_program(fake_sheaf.__file__).qualities == ("rough", "fine")
+
+
 def test_further_knobs_are_tried() -> None:
     labels = [trial["label"] for trial in found(knobs={"key-bits": ("16", "32")})["scenes"][0]["knobs"]]
     assert {"bvh spp 2 depth 2 key-bits 16", "bvh spp 2 depth 2 key-bits 32"} <= set(labels)
@@ -159,7 +163,7 @@ def check_page(text: str) -> None:
     assert {anchor.removeprefix("#") for anchor in page.anchors} <= set(page.ids)
     assert "report &lt;b&gt;&amp;" in text
     assert "url(" not in text
-    for words in ("draft", "Pareto front", "same again", "llvmpipe (made up)", "9.9.9"):
+    for words in ("rough", "Pareto front", "same again", "llvmpipe (made up)", "9.9.9"):
         assert words in text
 
 

@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import threading
 from collections.abc import Callable, Iterator
 
@@ -17,6 +18,10 @@ import pytest
 import sheaf
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from default_signals import default_signals  # noqa: E402, F401 - a fixture of every test
+
 BUILD = pathlib.Path(os.environ.get("SHEAF_BUILD", HERE / "../../build")).resolve()
 SCENES = HERE.parent / "scenes"
 PATIENCE_MS = 60_000

@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+HERE = pathlib.Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
 
+from default_signals import default_signals  # noqa: F401 - a fixture of every test
 from service import PATIENCE, Service
 
 

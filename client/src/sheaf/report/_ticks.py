@@ -60,7 +60,7 @@ class LogTicks(Locator):
         return float(size * (width + _GAP))
 
     def _is_across(self) -> bool:
-        return self.axis.axis_name == "x"  # type: ignore[union-attr]
+        return bool(self.axis.axis_name == "x")  # type: ignore[union-attr]
 
 
 def _multiples(low: float, high: float, multiples: tuple[int, ...]) -> list[float]:
