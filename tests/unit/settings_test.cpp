@@ -164,7 +164,9 @@ TEST(SettingsJson, TakesTheFormsOfEachType) {
     const std::string reason = text_from_json(*find_setting(one.name), one.value, text);
     SCOPED_TRACE(one.name + (" " + one.value.dump()) + ": " + reason);
     EXPECT_EQ(reason.empty(), one.text != nullptr);
-    if (reason.empty()) EXPECT_EQ(text, one.text);
+    if (reason.empty()) {
+      EXPECT_EQ(text, one.text);
+    }
   }
 }
 

@@ -38,6 +38,8 @@ class RenderSettings(TypedDict, total=False):
     """Generations of reflection and refraction (0 to 4096)."""
     cutoff: float | None
     """Least weight of a ray worth following (0 to 1)."""
+    glass_alpha: Literal["opaque", "transparent"] | None
+    """Transparent: the background shows through transmission, alpha is what glass holds back."""
     opaque: bool | None
     """Every surface opaque and two-sided."""
     environment: str | tuple[float, float, float] | None
@@ -126,6 +128,13 @@ SETTINGS: Mapping[str, Setting] = {
     "filter": Setting("choice", "NAME", ("box", "triangle", "gaussian"), "gaussian", "how samples make up a pixel"),
     "depth": Setting("integer", "N", (), 4, "generations of reflection and refraction"),
     "cutoff": Setting("number", "W", (), 0.002, "least weight of a ray worth following"),
+    "glass-alpha": Setting(
+        "choice",
+        "NAME",
+        ("opaque", "transparent"),
+        "opaque",
+        "transparent: the background shows through transmission, alpha is what glass holds back",
+    ),
     "opaque": Setting("flag", "", (), False, "every surface opaque and two-sided"),
     "environment": Setting(
         "color",
