@@ -69,7 +69,7 @@ SHEAF_CONST COUNT_WORDS = 32u;
 // not matter yet.
 SHEAF_CONST SUMS_SHARED = 0u, SUMS_OWN = 1u, SUMS_UNSET = 2u;
 
-// Statistics, 64-bit sums as two words (low, high), a block of STAT_WORDS a kind.
+// Statistics, 64-bit sums, a block of STAT_FIELDS a kind.
 SHEAF_CONST STAT_RAYS = 0u;
 SHEAF_CONST STAT_HITS = 1u;
 SHEAF_CONST STAT_NODE_OBJECT = 2u;
@@ -77,11 +77,7 @@ SHEAF_CONST STAT_RAY_BOX = 3u;
 SHEAF_CONST STAT_RAY_TRIANGLE = 4u;
 SHEAF_CONST STAT_LEVELS = 5u;         // node-object tests of the levels 0 (rays) … 15
 SHEAF_CONST STAT_FIELDS = 21u;
-// Then one record a (generation, kind): rays, chunks, sorted, tight bundles.
-SHEAF_CONST STAT_GENERATIONS = 4u * STAT_FIELDS * 2u;
-SHEAF_CONST STAT_GENERATION_WORDS = 4u;
-SHEAF_CONST MAX_GENERATION_RECORDS = 64u;
-SHEAF_CONST STAT_WORDS = STAT_GENERATIONS + STAT_GENERATION_WORDS * 4u * MAX_GENERATION_RECORDS;
+SHEAF_CONST STAT_SUMS = 4u * STAT_FIELDS;
 
 // Indirect dispatch arguments: three words each.
 SHEAF_CONST ARGS_RAYS = 0u;       // one invocation a ray of the list

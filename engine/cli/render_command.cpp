@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "cli/commands.hpp"
+#include "core/cpu_time.hpp"
 #include "core/error.hpp"
-#include "frame/auto_strategy.hpp"
 #include "frame/camera_source.hpp"
 #include "frame/dump_writer.hpp"
 #include "frame/frame_attributes.hpp"
@@ -38,6 +38,12 @@ void make_folder(const std::string& path) {
   remove_stale_parts(path);
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 class Job {
  public:
   Job(RenderOptions& options, Progress& progress);
@@ -45,7 +51,7 @@ class Job {
 
  private:
   [[nodiscard]] FrameRequest request_for(std::int64_t number) const;
-  void open_source(const FrameRequest& first);
+  void open_source(std::uint64_t frames);
   void render_all(const std::vector<std::int64_t>& numbers);
   void begin_writing();
   void write(RenderedFrame frame, const FrameRequest& request);
@@ -98,8 +104,8 @@ void Job::write(RenderedFrame frame, const FrameRequest& request) {
   const auto number = request.number;
   const auto begun = Clock::now();
   const auto path = (folder() / names_.frame(number)).string();
-  const auto attributes =
-      frame_attributes(scene_, options_, request.camera, number, request.time_s, fps_, stats_.strategy);
+  const auto attributes = frame_attributes(scene_, options_, request.camera, number, request.time_s, fps_,
+                                           joined(frame.stats.strategies));
   if (options_.preview) {
     const auto preview = (folder() / names_.preview(number)).string();
     write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
@@ -120,8 +126,8 @@ FrameRequest Job::request_for(std::int64_t number) const {
   return request;
 }
 
-void Job::open_source(const FrameRequest& first) {
-  source_ = make_frame_source(scene_, animations_, options_, camera_.moves(), first, stats_);
+void Job::open_source(std::uint64_t frames) {
+  source_ = make_frame_source(scene_, animations_, options_, camera_.moves(), frames, stats_);
   source_->set_dump(dump_.get());
 }
 
@@ -131,12 +137,15 @@ void Job::open_source(const FrameRequest& first) {
 void Job::render_all(const std::vector<std::int64_t>& numbers) {
   const auto pose = [&](std::size_t n) {
     if (n == numbers.size()) return std::future<FrameRequest>{};
-    return std::async(std::launch::async, [this, number = numbers[n]] { return request_for(number); });
+    return std::async(std::launch::async, [this, number = numbers[n]] {
+      const BesideDevice beside;
+      return request_for(number);
+    });
   };
   auto next = pose(0);
   for (std::size_t n = 0; n < numbers.size() && interrupted() == 0; ++n) {
     FrameRequest request = next.get();
-    if (!source_) open_source(request);
+    if (!source_) open_source(numbers.size());
     request.meanwhile = [&] {
       begin_writing();
       next = pose(n + 1);
@@ -144,6 +153,7 @@ void Job::render_all(const std::vector<std::int64_t>& numbers) {
     RenderedFrame frame = source_->render(request);
     request.meanwhile = nullptr;
     finish_writing();
+    source_->describe(stats_);
     rendered_.emplace(std::move(frame), std::move(request));
   }
 }
@@ -151,6 +161,7 @@ void Job::render_all(const std::vector<std::int64_t>& numbers) {
 void Job::begin_writing() {
   if (!rendered_) return;
   writing_ = std::async(std::launch::async, [this, rendered = std::move(*rendered_)]() mutable {
+    const BesideDevice beside;
     write(std::move(rendered.first), rendered.second);
   });
   rendered_.reset();

@@ -29,8 +29,6 @@ class DeviceScene {
   /// Moves everything to a pose. `origin` is the frame origin; triangles are relative to it.
   [[nodiscard]] Motion update(const Pose& pose, const CameraView& camera, Recorder& recorder);
   void bind(Recorder& recorder) const;
-  /// The next update takes everything for moved.
-  void forget() { fresh_ = true; }
 
   [[nodiscard]] const SceneLayout& layout() const { return layout_; }
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "frame/auto_strategy.hpp"
+#include "frame/frame_attributes.hpp"
 #include "frame/reference_frames.hpp"
 #include "settings/setting.hpp"
 
@@ -13,10 +13,11 @@ namespace {
 class DeviceFrames final : public FrameSource {
  public:
   DeviceFrames(std::unique_ptr<Device> device, std::shared_ptr<DeviceScene> scene, const Features& features,
-               const RenderSettings& settings, Strategy strategy)
+               const RenderSettings& settings, std::uint64_t frames)
       : device_(std::move(device)),
         still_(!features.geometry_moves() && !features.moving_camera && !features.moving_lights),
-        renderer_(*device_, std::move(scene), features, settings, strategy) {}
+        renderer_(*device_, std::move(scene), features, settings,
+                  still_ ? std::min<std::uint64_t>(frames, 1) : frames) {}
 
   RenderedFrame render(const FrameRequest& request) override {
     if (kept_) {  // neither geometry nor camera nor light moves: one picture for all frames
@@ -34,7 +35,14 @@ class DeviceFrames final : public FrameSource {
     return frame;
   }
   void set_dump(DumpWriter* dump) override { renderer_.set_dump(dump); }
-  [[nodiscard]] const Renderer& renderer() const { return renderer_; }
+  void describe(RunStats& stats) const override {
+    const std::string because = renderer_.chosen_because();
+    stats.strategy = name_of(renderer_.strategy());
+    stats.chosen_because = because.empty() ? "asked for" : because;
+    stats.left_out = renderer_.plan().left_out;
+    stats.scene.triangles = renderer_.scene().layout().triangles;
+    stats.scene.instances = renderer_.scene().layout().instances.size();
+  }
 
  private:
   std::unique_ptr<Device> device_;
@@ -57,8 +65,8 @@ void describe(const Scene& scene, const Features& features, const RenderOptions&
 }  // namespace
 
 std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::vector<std::uint32_t>& animations,
-                                               const RenderOptions& options, bool camera_moves,
-                                               const FrameRequest& first, RunStats& stats) {
+                                               const RenderOptions& options, bool camera_moves, std::uint64_t frames,
+                                               RunStats& stats) {
   const RenderSettings& settings = options.settings;
   const Features features = find_features(scene, animations, settings, camera_moves);
   describe(scene, features, options, stats);
@@ -72,19 +80,12 @@ std::unique_ptr<FrameSource> make_frame_source(const Scene& scene, const std::ve
   auto device = std::make_unique<Device>(options.device);
   stats.device_name = device->summary().name;
   stats.driver = device->summary().driver;
-  Choice choice{settings.strategy, "asked for"};
   const bool automatic = settings.strategy == Strategy::automatic;
   const Plan plan = make_plan(features, settings, automatic ? Strategy::bvh : settings.strategy);
   auto on_device = std::make_shared<DeviceScene>(*device, scene, settings, plan);
-  if (automatic) choice = choose_strategy(*device, on_device, features, settings, first);
-  stats.strategy = name_of(choice.strategy);
-  stats.chosen_because = choice.because;
-  auto frames =
-      std::make_unique<DeviceFrames>(std::move(device), std::move(on_device), features, settings, choice.strategy);
-  stats.left_out = frames->renderer().plan().left_out;
-  stats.scene.triangles = frames->renderer().scene().layout().triangles;
-  stats.scene.instances = frames->renderer().scene().layout().instances.size();
-  return frames;
+  auto source = std::make_unique<DeviceFrames>(std::move(device), std::move(on_device), features, settings, frames);
+  source->describe(stats);
+  return source;
 }
 
 }  // namespace sheaf

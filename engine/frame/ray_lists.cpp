@@ -63,8 +63,7 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
   const std::uint64_t budget = (settings.memory_mib << 20U) - (plan.packets ? walk_budget(settings) : 0);
   const std::uint64_t spare = plan.refractions && plan.reflections ? 2 : 1;  // a hit there makes up to two rays
   const std::uint64_t per_pixel = std::uint64_t{lights} * spare;
-  const std::uint64_t wanted =
-      std::min<std::uint64_t>(std::uint64_t{settings.width} * settings.height, settings.most_pixels) * per_pixel;
+  const std::uint64_t wanted = std::uint64_t{settings.width} * settings.height * per_pixel;
   std::uint64_t slots = std::min(budget / bytes_per_slot(plan, features), wanted);
   slots = std::min(slots, most_slots(device.limits().storage_range, settings, per_pixel));
   slots = std::min<std::uint64_t>(slots, std::uint64_t{1} << 24U);
@@ -95,8 +94,8 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
     m.sample_places = Buffer(device, "sample places", (std::uint64_t{settings.samples.most} + 1) * 8, Kind::upload);
   }
   m.frame = Buffer(device, "frame", sizeof(gpu::Frame));
-  m.stats = Buffer(device, "stats", gpu::STAT_WORDS * 8);
-  m.stats_readback = Buffer(device, "stats", gpu::STAT_WORDS * 8, Kind::readback);
+  m.stats = Buffer(device, "stats", gpu::STAT_SUMS * 8);
+  m.stats_readback = Buffer(device, "stats", gpu::STAT_SUMS * 8, Kind::readback);
   m.records = Buffer(device, "records", std::uint64_t{max_records} * gpu::COUNT_WORDS * 4);
   m.records_readback = Buffer(device, "records", std::uint64_t{max_records} * gpu::COUNT_WORDS * 4, Kind::readback);
   if (settings.layers.tests) {
@@ -113,8 +112,6 @@ RayMemory make_ray_memory(const Device& device, const RenderSettings& settings, 
     const std::uint64_t nodes = std::uint64_t{m.capacity} / 3 + gpu::MAX_LEVELS + 1;
     m.ray_nodes = Buffer(device, "ray hierarchy", nodes * gpu::RAY_NODE_WORDS * 4);
   }
-  if (plan.bundles)
-    m.loose_bundles = Buffer(device, "loose bundles", (std::uint64_t{m.capacity} / gpu::BUNDLE + 1) * 4);
   return m;
 }
 

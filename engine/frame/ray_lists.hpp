@@ -30,7 +30,7 @@ struct RayMemory {
   RayList shadow;
   std::array<RayList, 2> reflection, refraction;  // generations take turns; reflection[1] also holds the primary rays
   Buffer counters, args, block_sums, accumulation, visibility, output, readback, counters_readback;
-  Buffer keys, order_kept, chunks, chunks_alt, digits, skeleton, ray_nodes, loose_bundles;
+  Buffer keys, order_kept, chunks, chunks_alt, digits, skeleton, ray_nodes;
   Buffer pixel_tests, pixel_tests_readback, layers, layers_readback, stats, stats_readback, frame;
   Buffer accumulation_readback, active_pixels, sample_places;  // of adaptive sampling
   Buffer records, records_readback;  // the counters as they stood after each list was traced, for the stats

@@ -58,6 +58,7 @@ class ReferenceFrames final : public FrameSource {
     }
     FrameStats& stats = out.stats;
     stats.counted = true;
+    stats.strategies = {name_of(Strategy::reference)};
     std::uint64_t rays = 0;
     for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
       stats.rays[kind] = frame.counts.rays[kind];

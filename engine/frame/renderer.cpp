@@ -15,11 +15,13 @@ constexpr std::uint32_t generations_a_submit = 4;  // between looks at whether a
 }  // namespace
 
 Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, const Features& features,
-                   const RenderSettings& settings, Strategy strategy)
+                   const RenderSettings& settings, std::uint64_t frames)
     : device_(device),
       features_(features),
       settings_(settings),
-      plan_(make_plan(features, settings, strategy)),
+      plan_(make_plan(features, settings,
+                      settings.strategy == Strategy::automatic ? Strategy::hybrid : settings.strategy)),
+      compiled_(device, features, settings, plan_),
       recorder_(device),
       scene_(std::move(scene)),
       memory_(make_ray_memory(device, settings, plan_, features, scene_->lights())),
@@ -34,7 +36,12 @@ Renderer::Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, con
   if (plan_.raster) raster_.emplace(device, plan_, features_);
   if (settings.layers.any_surface()) layers_.emplace(device, plan_, features_);
   if (memory_.sample_places) std::copy(places_.begin(), places_.end(), memory_.sample_places.view<glm::vec2>().begin());
-  tracer_ = make_tracer({device_, *scene_, memory_, plan_, features_, settings_, strategy, settings.counted});
+  if (settings.strategy == Strategy::automatic) {
+    const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+    const auto tiles = static_cast<std::uint32_t>((pixels + memory_.tile_pixels - 1) / memory_.tile_pixels);
+    automatic_.emplace(device_, settings_, compiled_, AutoStrategy::Run{frames, features.triangles, tiles});
+  }
+  way_ = &way_of(automatic_ ? automatic_->first() : settings.strategy);
 }
 
 void Renderer::bind_all() {
@@ -98,11 +105,13 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
   const std::uint64_t dispatched = recorder_.dispatches();
   const Motion motion = scene_->update(request.pose, request.camera, recorder_);
   bind_all();
-  const Tile whole = request.only.value_or(Tile{0, 0, settings_.width, settings_.height});
+  const Tile whole{0, 0, settings_.width, settings_.height};
   set_frame(request.camera, {}, whole);
   animate_.record(recorder_, *scene_, motion);
   objects_.record(recorder_, *scene_, motion);
-  tracer_->objects_moved(recorder_, motion);
+  strategies_.clear();
+  choose_way(true);
+  for (const auto& [strategy, way] : ways_) way.tracer->objects_moved(recorder_, motion);
   if (dump_ != nullptr) {
     dump_->begin(request.number);
     list_dump_->triangles(recorder_, *dump_);
@@ -120,6 +129,7 @@ RenderedFrame Renderer::render(const FrameRequest& request) {
       out.stats.stages_ms.emplace_back(name, found->second);
   out.stats.peak_device_mib = static_cast<double>(device_.peak_bytes()) / (1 << 20);
   out.stats.dispatches = recorder_.dispatches() - dispatched;
+  out.stats.strategies = strategies_;
   std::uint64_t rays = 0;
   for (const auto count : out.stats.rays) rays += count;
   out.stats.brute_force = rays * scene_->triangles();
@@ -176,7 +186,7 @@ void Renderer::begin_tile(const Tile& tile) {
     recorder_.fill(memory_.accumulation, 0, 0, std::uint64_t{tile.pixels()} * 32);
   recorder_.fill(memory_.stats, 0);
   records_.clear();
-  record_pairs_.clear();
+  rays_seen_ = 0;
   if (memory_.pixel_tests) recorder_.fill(memory_.pixel_tests, 0, 0, std::uint64_t{tile.pixels()} * 4);
   if (dump_ != nullptr) dump_->mark();
 }
@@ -187,7 +197,6 @@ void Renderer::finish_tile(const Tile& tile) {
     recorder_.copy(memory_.accumulation, memory_.accumulation_readback, std::uint64_t{tile.pixels()} * 32);
   else
     resolve_.record(recorder_, memory_, tile.pixels(), settings_.samples.most);
-  recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
   if (memory_.pixel_tests)
     recorder_.copy(memory_.pixel_tests, memory_.pixel_tests_readback, std::uint64_t{tile.pixels()} * 4);
   recorder_.copy(memory_.records, memory_.records_readback, records_.size() * gpu::COUNT_WORDS * 4);
@@ -201,13 +210,15 @@ void Renderer::camera_hits(const FrameRequest& request, const Batch& batch, cons
   generate_.primary(recorder_, memory_, batch.rays);
   if (raster_) return;
   compact_.record_all(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, batch.rays);
-  tracer_->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
+  way_->tracer->trace(recorder_, memory_.reflection[1], gpu::KIND_PRIMARY, 0);
 }
 
 // False where its rays did not fit the lists. The last batch of a tile also brings its sums and counts to the host.
 bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last) {
   if (request.stop && request.stop())
     throw Error(ErrorKind::interrupted, "frame " + std::to_string(request.number) + ": interrupted");
+  choose_way(false);
+  const Spent before = spent();
   camera_hits(request, batch, tile);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, memory_.reflection[1], gpu::KIND_PRIMARY, 0, batch.rays);
   if (layers_ && settings_.samples.most == 1) layers_->record(recorder_, memory_, tile.pixels());
@@ -232,14 +243,17 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
     if (counters[gpu::COUNT_PARENTS] == 0) break;
   }
   recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);
+  recorder_.copy(memory_.stats, memory_.stats_readback, memory_.stats.bytes());
   if (last) finish_tile(tile);
   recorder_.submit_and_wait();
-  return counters[gpu::COUNT_OVERFLOW] == 0;
+  if (counters[gpu::COUNT_OVERFLOW] != 0) return false;
+  note_batch(before, batch);
+  return true;
 }
 
 void Renderer::trace(const RayList& list, std::uint32_t kind, std::uint32_t generation) {
   compact_.record(recorder_, list, kind);
-  tracer_->trace(recorder_, list, kind, generation);
+  way_->tracer->trace(recorder_, list, kind, generation);
   note_record(kind, generation);
   if (dump_ != nullptr) list_dump_->list(recorder_, *dump_, list, kind, generation, 0);
 }
@@ -253,8 +267,7 @@ void Renderer::set_dump(DumpWriter* dump) {
 void Renderer::note_record(std::uint32_t kind, std::uint32_t generation) {
   if (records_.size() == max_records) return;  // deeper ones count in the totals only
   recorder_.copy(memory_.counters, memory_.records, gpu::COUNT_WORDS * 4, 0, records_.size() * gpu::COUNT_WORDS * 4);
-  records_.emplace_back(generation, kind);
-  record_pairs_.push_back(tracer_->pairs_per_level());
+  records_.push_back({generation, kind, way_, way_->tracer->pairs_per_level()});
 }
 
 void Renderer::trace_shadows(std::uint32_t generation) {

@@ -5,10 +5,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "frame/auto_strategy.hpp"
 #include "frame/device_scene.hpp"
 #include "frame/list_dump.hpp"
 #include "frame/ray_lists.hpp"
@@ -33,7 +36,6 @@ struct FrameRequest {
   double time_s = 0;
   Pose pose;
   CameraView camera;
-  std::optional<Tile> only;  // no more than this part of the frame, for a probe
   /// Asked between batches of samples (the reference: rows); true ends the frame with Error{interrupted}.
   std::function<bool()> stop;
   /// Called once, when the device has got work: what may run beside it may begin, and does not delay it.
@@ -47,13 +49,17 @@ struct RenderedFrame {
 
 class Renderer {
  public:
-  /// `strategy` is a device strategy, not automatic or reference.
-  /// The scene may serve several renderers of one device, one frame after the other.
+  /// Tells the chooser of a run how many frames differ. Where the settings' strategy is a device's own, it alone is
+  /// used; where it is automatic, each batch goes to whom AutoStrategy names. The reference is none of a device.
   Renderer(const Device& device, std::shared_ptr<DeviceScene> scene, const Features& features,
-           const RenderSettings& settings, Strategy strategy);
+           const RenderSettings& settings, std::uint64_t frames);
 
   [[nodiscard]] RenderedFrame render(const FrameRequest& request);
-  [[nodiscard]] const Plan& plan() const { return plan_; }
+  /// With the strategy now in use, or kept.
+  [[nodiscard]] const Plan& plan() const { return way_->plan; }
+  [[nodiscard]] Strategy strategy() const { return automatic_ ? automatic_->trial().kept() : way_->strategy; }
+  /// Why that one; empty where it was asked for.
+  [[nodiscard]] std::string chosen_because() const { return automatic_ ? automatic_->trial().because() : ""; }
   [[nodiscard]] const DeviceScene& scene() const { return *scene_; }
   /// Every ray traced from now on goes there too; null: no more.
   void set_dump(DumpWriter* dump);
@@ -61,6 +67,20 @@ class Renderer {
  private:
   struct Batch {  // camera rays that go through the pipeline together
     std::uint32_t first = 0, samples = 1, rays = 0;
+  };
+  struct Way {  // from rays to hits
+    Strategy strategy;
+    Plan plan;
+    std::unique_ptr<Tracer> tracer;
+    bool noted = false;  // that its kernels are compiled
+  };
+  struct Record {  // of a list, when it had been traced
+    std::uint32_t generation, kind;
+    const Way* way;
+    std::vector<std::uint64_t> pairs;  // Tracer::pairs_per_level
+  };
+  struct Spent {  // since the device was opened
+    double cpu_ms = 0, stages_ms = 0, scene_ms = 0, tracing_ms = 0;
   };
 
   void set_frame(const CameraView& camera, const Batch& batch, const Tile& tile);
@@ -78,6 +98,10 @@ class Renderer {
   [[nodiscard]] bool render_batch(const FrameRequest& request, const Batch& batch, const Tile& tile, bool last);
   void trace(const RayList& list, std::uint32_t kind, std::uint32_t generation);
   void trace_shadows(std::uint32_t generation);
+  [[nodiscard]] Way& way_of(Strategy strategy);
+  void choose_way(bool frame_begins);
+  [[nodiscard]] Spent spent() const;
+  void note_batch(const Spent& before, const Batch& batch);
   void note_record(std::uint32_t kind, std::uint32_t generation);
   void collect_generations(RenderedFrame& out);
   void bind_all();
@@ -90,7 +114,8 @@ class Renderer {
   const Device& device_;
   const Features features_;
   const RenderSettings settings_;
-  const Plan plan_;
+  const Plan plan_;  // of all strategies that there may be: what they share is alike
+  const CompiledKernels compiled_;
   Recorder recorder_;
   std::shared_ptr<DeviceScene> scene_;
   RayMemory memory_;
@@ -102,11 +127,15 @@ class Renderer {
   Compact compact_;
   Shade shade_;
   Resolve resolve_;
-  std::unique_ptr<Tracer> tracer_;
+  std::map<Strategy, Way> ways_;
+  Way* way_ = nullptr;
+  std::optional<AutoStrategy> automatic_;
+  bool first_made_told_ = false;
+  std::vector<std::string> strategies_;     // of the frame's batches
+  std::uint64_t rays_seen_ = 0;             // of the tile, in the stats of its last batch
   std::vector<glm::dvec2> places_;          // of the samples in their pixel; behind them, its centre
   std::optional<AdaptivePixels> adaptive_;  // of the frame at work
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> records_;  // (generation, kind) of the tile's records
-  std::vector<std::vector<std::uint64_t>> record_pairs_;          // a record: Tracer::pairs_per_level
+  std::vector<Record> records_;             // of the tile
   DumpWriter* dump_ = nullptr;
   std::optional<ListDump> list_dump_;
 };

@@ -28,11 +28,12 @@ void Renderer::collect_generations(RenderedFrame& out) {
   const auto words = memory_.records_readback.view<std::uint32_t>();
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const auto* counters = &words[r * gpu::COUNT_WORDS];
-    const auto [generation, kind] = records_[r];
+    const auto& [generation, kind, way, pairs] = records_[r];
+    const Plan& plan = way->plan;
     if (counters[gpu::COUNT_RAYS + kind] == 0) continue;
     auto found =
         std::find_if(out.stats.generations.begin(), out.stats.generations.end(), [&](const GenerationStats& g) {
-          return g.index == records_[r].first && g.kind == static_cast<RayKind>(records_[r].second);
+          return g.index == records_[r].generation && g.kind == static_cast<RayKind>(records_[r].kind);
         });
     if (found == out.stats.generations.end()) {
       out.stats.generations.push_back({});
@@ -41,20 +42,20 @@ void Renderer::collect_generations(RenderedFrame& out) {
       found->kind = static_cast<RayKind>(kind);
     }
     found->rays += counters[gpu::COUNT_RAYS + kind];
-    add_levels(found->pairs_per_level, record_pairs_[r]);
-    if (plan_.bundles) {
+    add_levels(found->pairs_per_level, pairs);
+    if (plan.bundles) {
       const std::uint32_t size = device_.limits().bundle;
       const std::uint32_t bundles = (counters[gpu::COUNT_RAYS + kind] + size - 1) / size;
       found->nodes += bundles;
       found->tight += bundles - counters[gpu::COUNT_LOOSE];
-    } else if (plan_.packets) {
+    } else if (plan.packets) {
       found->nodes += counters[gpu::COUNT_CELLS];
     }
-    found->sorted = plan_.sorts && (kind != gpu::KIND_PRIMARY || plan_.classes);
-    found->sort_reason = why_sorted(plan_, settings_, kind);
+    found->sorted = plan.sorts && (kind != gpu::KIND_PRIMARY || plan.classes);
+    found->sort_reason = why_sorted(plan, settings_, kind);
     if (!found->sorted) continue;
     found->key_bits =
-        plan_.classes ? TraverseClasses::key_bits : key_layout(kind, scene_->lights(), memory_.tile_pixels).bits();
+        plan.classes ? TraverseClasses::key_bits : key_layout(kind, scene_->lights(), memory_.tile_pixels).bits();
     found->chunks += counters[gpu::COUNT_CHUNKS];
   }
 }

@@ -77,7 +77,8 @@ Json frame_json(const FrameStats& frame) {
           {"dispatches", frame.dispatches}, {"counted", frame.counted},
           {"repeated", frame.repeated},     {"stages", std::move(stages)},
           {"rays", all_kinds(frame.rays)},  {"hits", all_kinds(frame.hits)},
-          {"tests", tests_of(frame)},       {"generations", std::move(generations)}};
+          {"tests", tests_of(frame)},       {"generations", std::move(generations)},
+          {"strategies", frame.strategies}};
 }
 
 // Sums for the totals. Rays and brute force appear twice: of all frames, and of those whose tests were counted, since

@@ -48,6 +48,7 @@ struct FrameStats {
   bool counted = false;           // tests were counted in this frame
   bool repeated = false;          // pixels are those of an earlier identical frame; nothing was traced
   std::vector<GenerationStats> generations;
+  std::vector<std::string> strategies;  // that traced it, in the order they first did
 };
 
 struct LeftOut {

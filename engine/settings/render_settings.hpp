@@ -45,7 +45,6 @@ struct RenderSettings : ImageSize {
 #include "settings/table.def"
 #undef PICTURE
 #undef RUN
-  std::uint32_t most_pixels = ~0U;  // of a tile: a probe needs no lists for a whole frame
   bool counted = true;              // whether tests are counted; what --count, --stats and --aov come to
 };
 

@@ -40,6 +40,10 @@ class Tracer {
   /// Pairs of a node and an object that the last trace tested on each level, root first; none where levels are not
   /// walked one by one.
   [[nodiscard]] virtual std::vector<std::uint64_t> pairs_per_level() const { return {}; }
+  /// Whether its kernels are there, so that `trace` need not wait; asked of those that `auto` tries.
+  [[nodiscard]] virtual bool made() const { return true; }
+  /// CPU time that making them took; waits for them.
+  [[nodiscard]] virtual double making_ms() const { return 0; }
 };
 
 [[nodiscard]] std::unique_ptr<Tracer> make_tracer(const TraceContext& context);

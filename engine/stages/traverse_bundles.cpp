@@ -15,7 +15,10 @@ constexpr std::uint32_t most_effort = 250;
 
 }  // namespace
 
-TraverseBundles::TraverseBundles(const TraceContext& c) : context_(c), single_(c, true) {
+TraverseBundles::TraverseBundles(const TraceContext& c)
+    : context_(c),
+      loose_bundles_(c.device, "loose bundles", (std::uint64_t{c.memory.capacity} / gpu::BUNDLE + 1) * 4),
+      single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
   const auto lanes = lane_constants(c.device, c.device.limits().bundle);
   auto make = [&](bool any_hit) {
@@ -32,7 +35,7 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
   if (context_.plan.sorts && kind != gpu::KIND_PRIMARY) sort_.record(recorder, context_, kind);
 
   recorder.stage("traverse");
-  recorder.bind(ROLE_WORK, context_.memory.loose_bundles);
+  recorder.bind(ROLE_WORK, loose_bundles_);
   const bool shadow = kind == gpu::KIND_SHADOW;
   const struct {
     std::uint32_t kind, most_effort;

@@ -12,6 +12,8 @@ namespace sheaf {
 struct SingleKernels {
   SingleKernels() = default;
   SingleKernels(const TraceContext& context, bool loose);
+  [[nodiscard]] bool made() const { return nearest.made() && any.made(); }
+  [[nodiscard]] double making_ms() const { return nearest.making_ms() + any.making_ms(); }
   Kernel nearest, any;
 };
 
@@ -19,6 +21,8 @@ class TraverseSingle final : public Tracer {
  public:
   explicit TraverseSingle(const TraceContext& context) : kernels_(context, false) {}
   void trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t generation) override;
+  [[nodiscard]] bool made() const override { return kernels_.made(); }
+  [[nodiscard]] double making_ms() const override { return kernels_.making_ms(); }
 
  private:
   SingleKernels kernels_;

@@ -2,7 +2,9 @@
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
+#include <chrono>
 
+#include "core/cpu_time.hpp"
 #include "shared.h"
 
 namespace sheaf {
@@ -64,10 +66,17 @@ Kernel::Kernel(const Device& device, std::string_view stem, std::span<const Spec
   given.push_back({SPEC_WORKERS, device.limits().workers});
   given.push_back({SPEC_BUNDLE, device.limits().bundle});
   auto make = [&device, stem = stem_, layout = layout_.handle(), given = std::move(given)] {
+    const BesideDevice beside;
     const auto making = device.while_making();
-    return make_pipeline(device, stem, layout, given);
+    const double begun = thread_cpu_ms();
+    auto pipeline = make_pipeline(device, stem, layout, given);
+    return Made{std::move(pipeline), thread_cpu_ms() - begun};
   };
-  pipeline_ = std::async(std::launch::async, std::move(make)).share();
+  made_ = std::async(std::launch::async, std::move(make)).share();
+}
+
+bool Kernel::made() const {
+  return !made_.valid() || made_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 }  // namespace sheaf

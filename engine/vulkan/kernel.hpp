@@ -51,13 +51,21 @@ class Kernel {
   [[nodiscard]] explicit operator bool() const { return !stem_.empty(); }
   [[nodiscard]] const std::string& stem() const { return stem_; }
   /// Waits until it is made; rethrows what went wrong then.
-  [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_.get(); }
+  [[nodiscard]] vk::Pipeline pipeline() const { return *made_.get().pipeline; }
+  /// Whether `pipeline` need not wait; true of none.
+  [[nodiscard]] bool made() const;
+  /// CPU time that it took to be made, of its thread; waits as `pipeline` does.
+  [[nodiscard]] double making_ms() const { return made_.valid() ? made_.get().cpu_ms : 0; }
   [[nodiscard]] const PipelineLayout& layout() const { return layout_; }
 
  private:
+  struct Made {
+    vk::raii::Pipeline pipeline;
+    double cpu_ms;
+  };
   std::string stem_;
   PipelineLayout layout_;
-  std::shared_future<vk::raii::Pipeline> pipeline_;
+  std::shared_future<Made> made_;
 };
 
 }  // namespace sheaf

@@ -61,7 +61,8 @@ class Recorder {
   /// Runs what was recorded and waits. Throws Error{device} when the device is lost.
   void submit_and_wait();
 
-  /// Milliseconds a stage since the last call.
+  /// Milliseconds a stage since the last call of take_times.
+  [[nodiscard]] const std::map<std::string, double>& times() const { return times_; }
   [[nodiscard]] std::map<std::string, double> take_times();
   [[nodiscard]] std::uint64_t dispatches() const { return dispatches_; }
 

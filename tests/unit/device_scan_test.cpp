@@ -156,7 +156,7 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
   counters[gpu::COUNT_LOOSE] = 7;  // of the list before
   set_args(arguments, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS, blocks_of(slots));
   set_args(arguments, gpu::ARGS_LOOSE, 7);
-  std::vector<std::uint64_t> stats(gpu::STAT_WORDS);
+  std::vector<std::uint64_t> stats(gpu::STAT_SUMS);
   stats[kind * gpu::STAT_FIELDS + gpu::STAT_RAYS] = 1ULL << 40U;  // of generations before
   gpu::Frame frame{};
   frame.capacity = capacity;

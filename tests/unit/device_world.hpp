@@ -89,7 +89,7 @@ class DeviceWorld {
   }
 
   std::uint64_t stat(std::uint32_t kind, std::uint32_t field) {
-    return read<std::uint64_t>(recorder_, memory_.stats, gpu::STAT_WORDS)[kind * gpu::STAT_FIELDS + field];
+    return read<std::uint64_t>(recorder_, memory_.stats, gpu::STAT_SUMS)[kind * gpu::STAT_FIELDS + field];
   }
 
  private:

@@ -55,6 +55,7 @@ class FrameStats(TypedDict, total=False):
     hits: dict[str, int]
     tests: TestStats
     generations: list[dict[str, Any]]
+    strategies: list[str]
 
 
 class TotalStats(TypedDict, total=False):

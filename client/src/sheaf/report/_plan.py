@@ -98,7 +98,7 @@ def strategy_points(program: Program, options: StudyOptions) -> list[Point]:
     known = options.strategies or program.strategies
     points = [Point(settings) for settings in _PUBLISHED if settings["strategy"] in known]
     published = {settings["strategy"] for settings in _PUBLISHED}
-    # auto is one of the others after a probe, reference is what all are held against, brute is for small scenes.
+    # auto is one of the others after a trial, reference is what all are held against, brute is for small scenes.
     asked = () if options.strategies is None else options.strategies
     return points + [Point({"strategy": name}) for name in asked if name not in published]
 
