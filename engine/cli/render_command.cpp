@@ -87,6 +87,8 @@ Job::Job(RenderOptions& options, Progress& progress)
               static_cast<double>(options.settings.width) / options.settings.height),
       names_(options.name.empty() ? default_name_pattern(options.scene) : options.name),
       fps_(options.fps.value_or(camera_.fps().value_or(24.0))) {
+  if (const auto warning = compression_warning(options.compression, options.settings.layers); !warning.empty())
+    progress_.warning(warning);
   for (const auto& warning : scene_.warnings) progress_.warning(options.scene + ": " + warning);
   make_folder(options.out);
   if (!options.dump.empty()) {

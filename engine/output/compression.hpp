@@ -15,4 +15,7 @@ constexpr auto choice_names(Compression) { return std::array{"none", "rle", "zip
 /// Says why layers cannot go with this compression; empty where they can.
 [[nodiscard]] std::string compression_conflict(Compression compression, const LayerSet& layers);
 
+/// What readers of such files are known to lack, for a warning; empty where there is nothing to say.
+[[nodiscard]] std::string compression_warning(Compression compression, const LayerSet& layers);
+
 }  // namespace sheaf

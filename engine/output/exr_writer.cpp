@@ -22,6 +22,7 @@
 
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/exr_zip.hpp"
 
 namespace sheaf {
 namespace {
@@ -117,6 +118,13 @@ void check_conflict(const FrameLayers& layers, Compression compression) {
   if (!conflict.empty()) throw Error(ErrorKind::usage, conflict);
 }
 
+// The magic number, the version (2, a single part of scanlines; no name is long) and the attributes.
+void write_header(AtomicStream& stream, const Imf::Header& header) {
+  constexpr std::array<std::uint8_t, 8> start{0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0};
+  stream.write(reinterpret_cast<const char*>(start.data()), static_cast<int>(start.size()));
+  header.writeTo(stream);
+}
+
 Imath::M44f to_row_vectors(const glm::dmat4& matrix) {
   Imath::M44f result;
   for (int i = 0; i < 4; ++i)
@@ -174,10 +182,17 @@ void write_exr(const std::string& path, const FrameLayers& layers, const FrameAt
   header.compression() = imf_compressions.at(static_cast<std::size_t>(compression));
   add_attributes(header, attributes);
   const Channels channels(layers, header);
+  if (channels.frame_buffer().begin() == channels.frame_buffer().end())
+    throw Error(ErrorKind::usage, "EXR: there is no layer to write");
 
   AtomicFile file(path);
   AtomicStream stream(file, path);
   try {
+    if (compression == Compression::zip || compression == Compression::zips) {
+      write_header(stream, header);
+      write_zip_chunks(file, header, channels.frame_buffer());
+      return file.commit();
+    }
     constexpr int threads = 0;  // lines are compressed here, in order
     Imf::OutputFile output(stream, header, threads);
     output.setFrameBuffer(channels.frame_buffer());

@@ -6,6 +6,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
 #include <sys/resource.h>
 
 #include <array>
@@ -109,6 +110,62 @@ TEST_F(ExrWriterTest, EveryLayerReadsBackExactly) {
   }
 }
 
+// What OpenEXR itself writes of the same header and pixels: the same bytes up to the chunks, and as many of these.
+TEST_F(ExrWriterTest, ZipFilesAreLaidOutAsOpenExrDoes) {
+  for (const Compression compression : {Compression::zips, Compression::zip})
+    for (const std::uint32_t height : {1U, 15U, 16U, 17U, 53U}) {
+      SCOPED_TRACE(name_of(compression) + std::string(", lines: ") + std::to_string(height));
+      write_exr(path("a.exr"), full(37, height), attributes(), compression);
+      Imf::InputFile ours(path("a.exr").c_str(), 0);
+      Imf::Header header = ours.header();
+      header.erase("type");  // filled in by the reader
+      std::uint64_t table = 0;
+      {
+        const std::vector<char> lines(std::size_t{37} * height * 4);
+        Imf::FrameBuffer buffer;
+        const Imf::ChannelList& channels = header.channels();
+        for (auto at = channels.begin(); at != channels.end(); ++at)
+          buffer.insert(at.name(), Imf::Slice(at.channel().type, const_cast<char*>(lines.data()), 4, 37 * 4));
+        Imf::OutputFile theirs(path("b.exr").c_str(), header, 0);
+        theirs.setFrameBuffer(buffer);
+        theirs.writePixels(static_cast<int>(height));
+      }
+      const std::string a = contents(path("a.exr")), b = contents(path("b.exr"));
+      const std::size_t lines = compression == Compression::zip ? 16 : 1, chunks = (height + lines - 1) / lines;
+      const auto place = [](const std::string& file, std::size_t at) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, file.data() + at, sizeof value);
+        return value;
+      };
+      for (table = 8; table + 8 < a.size() && place(a, table) != table + chunks * 8; ++table) {
+      }
+      EXPECT_EQ(a.substr(0, table), b.substr(0, table));
+      EXPECT_EQ(place(b, table), table + chunks * 8);
+      std::uint64_t next = table + chunks * 8;
+      for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        ASSERT_EQ(place(a, table + chunk * 8), next);
+        EXPECT_EQ(a.substr(next, 4), b.substr(place(b, table + chunk * 8), 4));  // its first line
+        std::int32_t size = 0;
+        std::memcpy(&size, a.data() + next + 4, sizeof size);
+        next += 8 + static_cast<std::uint64_t>(size);
+      }
+      EXPECT_EQ(next, a.size());
+    }
+}
+
+TEST_F(ExrWriterTest, WhatDoesNotBecomeSmallerIsStoredAsItIs) {
+  FrameLayers layers{64, 40, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  std::mt19937 random(1);
+  for (int i = 0; i < 64 * 40; ++i) layers.object_id.push_back(static_cast<std::uint32_t>(random()));
+  for (const Compression compression : {Compression::zips, Compression::zip}) {
+    write_exr(path("a.exr"), layers, attributes(), compression);
+    expect_same(path("a.exr"), {"id.object"}, Imf::UINT, layers.object_id);
+    EXPECT_NE(contents(path("a.exr"))
+                  .find(std::string(reinterpret_cast<const char*>(layers.object_id.data()), std::size_t{64} * 4)),
+              std::string::npos);
+  }
+}
+
 TEST_F(ExrWriterTest, RowZeroIsAtTheTop) {
   FrameLayers layers;
   layers.width = 2;
@@ -200,6 +257,9 @@ TEST_F(ExrWriterTest, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal(with), "EXR: frame 1099511627776 does not fit an attribute");
   layers.normal = {1, 2};
   EXPECT_EQ(refusal(attributes()), "EXR: layer N has 2 values, not 3");
+  layers.normal.clear();
+  layers.rgba.clear();
+  EXPECT_EQ(refusal(attributes()), "EXR: there is no layer to write");
   layers.height = 0;
   EXPECT_EQ(refusal(attributes()), "EXR: 1x0 is not a size of an image");
   EXPECT_EQ(names(), std::vector<std::string>{});
