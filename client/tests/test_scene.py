@@ -86,9 +86,23 @@ def test_refuses_links_out_of_the_folder(tmp_path: Path) -> None:
 
 
 def test_names_the_missing_file(tmp_path: Path) -> None:
-    scene = gltf(tmp_path, buffers=[{"uri": "gone.bin"}])
+    used = {"bufferViews": [{"buffer": 0}], "textures": [{"source": 0}]}
     with pytest.raises(sheaf.SceneError, match=r"buffers\[0\].*'gone.bin' is missing"):
-        collect_scene(scene)
+        collect_scene(gltf(tmp_path, document=used | {"buffers": [{"uri": "gone.bin"}]}))
+    with pytest.raises(sheaf.SceneError, match=r"images\[0\].*'gone.png' is missing"):
+        collect_scene(gltf(tmp_path, document=used | {"images": [{"uri": "gone.png"}]}))
+
+
+def test_what_nothing_refers_to_may_be_missing(tmp_path: Path) -> None:
+    (tmp_path / "a.png").touch()
+    scene = gltf(tmp_path, buffers=[{"uri": "gone.bin"}], images=[{"uri": "a.png"}, {"uri": "gone.png"}])
+    assert collect_scene(scene).beside == {"a.png": tmp_path / "a.png"}
+
+
+def test_steps_up_inside_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "a.png").touch()
+    for uri in ("tex/../a.png", "tex/%2e%2e/a.png", "./x/y/../../a.png"):
+        assert collect_scene(gltf(tmp_path, images=[{"uri": uri}])).beside == {"a.png": tmp_path / "a.png"}
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", "\udc80", "[" * 100_000])
@@ -101,7 +115,7 @@ def test_refuses_what_is_no_gltf(tmp_path: Path, text: str) -> None:
 
 def test_binary_scenes_may_have_files_beside_them_too(tmp_path: Path) -> None:
     path = tmp_path / "box.GLB"
-    path.write_bytes(glb(images=[{"uri": "a.png"}]) + b"binary chunk")
+    path.write_bytes(glb(images=[{"uri": "a.png"}], textures=[{"source": 0}]) + b"binary chunk")
     with pytest.raises(sheaf.SceneError, match=r"a.png' is missing"):
         collect_scene(path)
     (tmp_path / "a.png").touch()

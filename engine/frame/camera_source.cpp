@@ -40,6 +40,8 @@ CameraSource::CameraSource(const Scene& scene, const std::vector<std::uint32_t>&
   }
   node_ = find_camera_node(scene, node_selector);
   if (node_ != none) {
+    const std::string& fault = scene.cameras[scene.nodes[node_].camera].fault;
+    if (!fault.empty()) throw Error(ErrorKind::input, fault);
     moves_ = moving_nodes(scene, animations)[node_];
     description_ = "camera of node " + std::to_string(node_) + " (" + scene.nodes[node_].name + ")";
     return;

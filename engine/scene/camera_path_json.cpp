@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <glm/gtc/matrix_access.hpp>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "scene/last_row.hpp"
 #include "scene/rigid.hpp"
 
 namespace sheaf {
@@ -53,6 +53,30 @@ std::vector<double> JsonObject::numbers(const char* key, std::size_t count) cons
   return value.get<std::vector<double>>();
 }
 
+std::vector<double> JsonObject::rows_of_4(const char* key) const {
+  const nlohmann::json& value = get(key);
+  const auto refuse = [&] { fail(key, "must be a list of 16 numbers, or 4 rows of 4"); };
+  if (!value.is_array()) refuse();
+  std::vector<double> out;
+  const auto append = [&](const nlohmann::json& list) {
+    for (const auto& element : list) {
+      if (!element.is_number()) fail(key, std::string("must hold numbers, not ") + element.type_name());
+      out.push_back(element.get<double>());
+    }
+  };
+  const bool nested = !value.empty() && value.front().is_array();
+  if (!nested && value.size() <= 16) append(value);
+  if (nested && value.size() <= 4) {
+    for (const auto& row : value) {
+      if (!row.is_array() || row.size() != 4) refuse();
+      append(row);
+    }
+  }
+  if (out.size() == 12) out.insert(out.end(), {0, 0, 0, 1});
+  if (out.size() != 16) refuse();
+  return out;
+}
+
 glm::dvec3 JsonObject::vec3(const char* key) const {
   const std::vector<double> v = numbers(key, 3);
   return {v[0], v[1], v[2]};
@@ -79,8 +103,8 @@ std::vector<JsonObject> JsonObject::objects(const char* key) const {
   return out;
 }
 
-void pose_from_matrix(const JsonObject& object, const char* key, const glm::dmat4& matrix, CameraKey& out) {
-  if (glm::row(matrix, 3) != glm::dvec4(0, 0, 0, 1)) object.fail(key, "has a last row other than 0 0 0 1");
+void pose_from_matrix(const JsonObject& object, const char* key, glm::dmat4 matrix, CameraKey& out) {
+  if (round_last_row(matrix) == Rounding::impossible) object.fail(key, "has a last row other than 0 0 0 1");
   const glm::dmat3 basis(matrix);
   const double lengths = glm::length(basis[0]) * glm::length(basis[1]) * glm::length(basis[2]);
   const double determinant = glm::determinant(basis);

@@ -20,10 +20,14 @@ class JsonObject {
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
   void only(std::initializer_list<const char*> known) const;  // refuses any other key, by name
 
-  [[nodiscard]] bool has(const char* key) const { return value_.contains(key); }
+  /// Null stands for a key that is not there.
+  [[nodiscard]] bool has(const char* key) const { return value_.contains(key) && !value_.at(key).is_null(); }
   [[nodiscard]] double number(const char* key) const;
   [[nodiscard]] double number_or(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
   [[nodiscard]] std::vector<double> numbers(const char* key, std::size_t count) const;
+  /// The rows of a matrix, each a list of numbers, one after another; or all numbers in one list. 4 rows of 4, or the
+  /// upper 3 of them, completed by 0 0 0 1.
+  [[nodiscard]] std::vector<double> rows_of_4(const char* key) const;
   [[nodiscard]] glm::dvec3 vec3(const char* key) const;
   [[nodiscard]] bool boolean_or(const char* key, bool otherwise) const;
   [[nodiscard]] std::string text(const char* key) const;
@@ -38,8 +42,8 @@ class JsonObject {
 };
 
 /// Camera-to-world, already column-major: a key's position and rotation, scale removed. Refuses reflections, singular
-/// matrices and projective ones.
-void pose_from_matrix(const JsonObject& object, const char* key, const glm::dmat4& matrix, CameraKey& out);
+/// matrices and projective ones; a last row that was rounded is made exact.
+void pose_from_matrix(const JsonObject& object, const char* key, glm::dmat4 matrix, CameraKey& out);
 
 /// The fps of a path: a positive number, or "24000/1001".
 [[nodiscard]] double read_fps(const JsonObject& object, const nlohmann::json& value);

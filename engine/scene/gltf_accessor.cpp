@@ -90,6 +90,7 @@ std::string accessor_name(int accessor) { return at("accessors", static_cast<std
 }  // namespace
 
 const tinygltf::Accessor& Accessors::get(int accessor) const {
+  file_.require("accessors", static_cast<std::size_t>(accessor));
   return file_.model.accessors[static_cast<std::size_t>(accessor)];
 }
 
@@ -103,13 +104,7 @@ Accessors::Source Accessors::window(const std::string& place, int view_index, st
                                     std::size_t element, std::size_t component) const {
   const auto slot = static_cast<std::size_t>(view_index);
   const tinygltf::BufferView& view = file_.model.bufferViews[slot];
-  // The schema check compared the view with the buffer's declared length, and tinygltf that with its bytes.
-  const tinygltf::Buffer& buffer = file_.model.buffers[static_cast<std::size_t>(view.buffer)];
-  if (view.byteOffset > buffer.data.size() || view.byteLength > buffer.data.size() - view.byteOffset) {
-    file_.fail(at("bufferViews", slot), "lies outside its buffer");
-  }
-  const std::uint8_t* bytes = buffer.data.data() + view.byteOffset;
-  const std::uint64_t length = view.byteLength;
+  const std::span<const std::uint8_t> bytes = file_.bytes->view(file_, slot);
   if ((view.byteOffset + offset) % component != 0) {
     file_.fail(place, "its data is not aligned to " + std::to_string(component) + " bytes");
   }
@@ -120,11 +115,11 @@ Accessors::Source Accessors::window(const std::string& place, int view_index, st
   }
   if (stride % component != 0) file_.fail(place, "byteStride is not a multiple of the component's size");
   // count ≤ 2^40 and stride ≤ 252 by the checks before this one: no overflow.
-  if (offset > length || (count - 1) * stride + element > length - offset) {
+  if (offset > bytes.size() || (count - 1) * stride + element > bytes.size() - offset) {
     file_.fail(place, std::to_string(count) + " elements end outside " + at("bufferViews", slot) + " of " +
-                          std::to_string(length) + " bytes");
+                          std::to_string(bytes.size()) + " bytes");
   }
-  return {bytes + offset, static_cast<std::size_t>(stride), count};
+  return {bytes.data() + offset, static_cast<std::size_t>(stride), count};
 }
 
 Accessors::Source Accessors::dense(int index) const {

@@ -119,8 +119,17 @@ Animation read_animation(GltfFile& file, const Accessors& accessors, const std::
 
 void load_animations(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& scene) {
   const Accessors accessors(file);
-  for (std::size_t i = 0; i < file.model.animations.size(); ++i) {
-    scene.animations.push_back(read_animation(file, accessors, meshes, i, scene));
+  for (std::size_t i = 0; i < file.count("animations"); ++i) {
+    try {
+      file.require("animations", i);
+      scene.animations.push_back(read_animation(file, accessors, meshes, i, scene));
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::input) throw;
+      Animation& animation = scene.animations.emplace_back();
+      animation.name = file.json["animations"][i].value("name", "");
+      animation.fault = error.what();
+      file.warn_of(animation.fault, "the animation cannot be used");
+    }
   }
 }
 

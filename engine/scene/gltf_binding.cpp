@@ -9,11 +9,13 @@ namespace sheaf {
 namespace {
 
 Skin read_skin(const GltfFile& file, const Accessors& accessors, std::size_t index) {
+  file.require("skins", index);
   const tinygltf::Skin& source = file.model.skins[index];
   const std::string place = at("skins", index);
   Skin skin;
   skin.joints.assign(source.joints.begin(), source.joints.end());
   if (skin.joints.empty()) file.fail(place + ".joints", "is empty");
+  for (const std::uint32_t joint : skin.joints) file.require("nodes", joint);
   if (skin.joints.size() > 65536) file.over_limit(place + ".joints", "has more than 65536 joints");
   skin.inverse_bind.assign(skin.joints.size(), glm::dmat4(1));
   if (source.inverseBindMatrices < 0) return skin;
@@ -84,8 +86,8 @@ void pose_joints(GltfFile& file, std::uint32_t skin, const std::string& place, S
                        " is not in the scene; joints outside it are placed by the nodes they hang from");
 }
 
-void bind_skin(GltfFile& file, const MeshEntry& mesh, Scene& scene, std::size_t index, Node& node,
-               std::vector<bool>& posed) {
+void bind_skin(GltfFile& file, const Accessors& accessors, const MeshEntry& mesh, Scene& scene, std::size_t index,
+               Node& node, std::vector<bool>& posed) {
   const int skin = file.model.nodes[index].skin;
   if (skin < 0 || mesh.count == 0) return;
   const std::string place = at("nodes", index);
@@ -93,7 +95,9 @@ void bind_skin(GltfFile& file, const MeshEntry& mesh, Scene& scene, std::size_t 
     file.warn(place + ".skin", "is ignored: the node's mesh has no JOINTS_0");
     return;
   }
-  const std::size_t joints = scene.skins[static_cast<std::size_t>(skin)].joints.size();
+  Skin& read = scene.skins[static_cast<std::size_t>(skin)];
+  if (read.joints.empty()) read = read_skin(file, accessors, static_cast<std::size_t>(skin));
+  const std::size_t joints = read.joints.size();
   if (mesh.joints > joints) {
     file.fail(place, "its mesh refers to joint " + std::to_string(mesh.joints - 1) + ", " +
                          at("skins", static_cast<std::size_t>(skin)) + " has " + std::to_string(joints));
@@ -106,7 +110,7 @@ void bind_skin(GltfFile& file, const MeshEntry& mesh, Scene& scene, std::size_t 
 
 void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& scene) {
   const Accessors accessors(file);
-  for (std::size_t i = 0; i < file.model.skins.size(); ++i) scene.skins.push_back(read_skin(file, accessors, i));
+  scene.skins.resize(file.model.skins.size());  // those that nothing wears stay empty
   std::vector<bool> posed(scene.nodes.size(), false);
   for (const std::uint32_t i : scene.order) posed[i] = true;
   std::uint64_t instances = 0;
@@ -122,7 +126,7 @@ void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& sc
       file.fail(at("nodes", i) + ".weights", "has " + std::to_string(node.morph_weights.size()) + " weights for " +
                                                  std::to_string(mesh.targets) + " morph targets");
     }
-    bind_skin(file, mesh, scene, i, node, posed);
+    bind_skin(file, accessors, mesh, scene, i, node, posed);
     if (const auto* e = extension(file.json["nodes"][i], "EXT_mesh_gpu_instancing")) {
       node.instances =
           read_instances(file, accessors, e->at("attributes"), at("nodes", i) + ".EXT_mesh_gpu_instancing");

@@ -15,7 +15,12 @@ Camera perspective_camera(const GltfFile& file, const json& object, const std::s
   camera.yfov = object.at("yfov").get<double>();
   camera.aspect = number_or(object, "aspectRatio", 0);
   camera.near = object.at("znear").get<double>();
-  camera.far = number_or(object, "zfar", std::numeric_limits<double>::infinity());
+  const double far = number_or(object, "zfar", 0);
+  if (far > 0) {
+    camera.far = far;
+  } else if (object.contains("zfar")) {
+    file.warn(place + ".zfar", "is 0, taken as infinite");
+  }
   if (!(camera.yfov > 0 && camera.yfov < std::numbers::pi)) file.fail(place + ".yfov", "must be between 0 and pi");
   if (!(camera.near >= 0 && camera.far > camera.near)) file.fail(place, "zfar must be larger than znear");
   return camera;
@@ -69,7 +74,10 @@ Light read_light(GltfFile& file, const json& object, const std::string& place) {
   light.intensity = static_cast<float>(number_or(object, "intensity", 1));
   if (object.contains("range")) {
     light.range = static_cast<float>(number_or(object, "range", 0));
-    if (!(light.range > 0)) file.fail(place + ".range", "must be larger than 0");
+    if (light.range == 0) {
+      file.warn(place + ".range", "is 0, taken as infinite");
+      light.range = std::numeric_limits<float>::infinity();
+    }
   }
   return light;
 }
@@ -77,12 +85,18 @@ Light read_light(GltfFile& file, const json& object, const std::string& place) {
 }  // namespace
 
 void load_cameras(GltfFile& file, Scene& scene) {
-  for (std::size_t i = 0; i < file.model.cameras.size(); ++i) {
+  for (std::size_t i = 0; i < file.count("cameras"); ++i) {
     const json& object = file.json["cameras"][i];
-    const std::string type = object.at("type").get<std::string>(), place = at("cameras", i) + "." + type;
-    const auto read = type == "perspective" ? &perspective_camera : &orthographic_camera;
-    scene.cameras.push_back(read(file, object.at(type), place));
-    scene.cameras.back().name = object.value("name", "");
+    Camera& camera = scene.cameras.emplace_back();
+    try {
+      file.require("cameras", i);
+      const std::string type = object.at("type").get<std::string>(), place = at("cameras", i) + "." + type;
+      camera = (type == "perspective" ? &perspective_camera : &orthographic_camera)(file, object.at(type), place);
+    } catch (const Error& error) {
+      camera.fault = error.what();
+      file.warn_of(camera.fault, "the camera cannot be used");
+    }
+    camera.name = object.value("name", "");
   }
 }
 
@@ -91,7 +105,14 @@ void load_lights(GltfFile& file, Scene& scene) {
   list = list ? member(*list, "lights") : nullptr;
   if (!list) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
-    scene.lights.push_back(read_light(file, (*list)[i], "extensions.KHR_lights_punctual." + at("lights", i)));
+    Light& light = scene.lights.emplace_back();
+    const std::string place = "extensions.KHR_lights_punctual." + at("lights", i);
+    if (file.broken.find("lights", i)) continue;
+    try {
+      light = read_light(file, (*list)[i], place);
+    } catch (const Error& error) {
+      file.broken.mark("lights", i, file.fault_of(error.what()));
+    }
   }
 }
 

@@ -6,16 +6,18 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sheaf {
 
 struct GltfContainer {
-  bool is_binary = false;
   std::string_view json;
   std::span<const std::uint8_t> binary;  // the .glb's BIN chunk, empty where it has none
+  std::vector<std::string> oddities;     // what breaks the format's rules though it can be read
 };
 
-/// Tells .glb from .gltf by its first bytes and checks every chunk against the file's size. Views into `bytes`.
+/// Tells .glb from .gltf by its first bytes and checks every chunk against the file's size. Views into `bytes`. What is
+/// neither is refused by the name of what it is.
 [[nodiscard]] GltfContainer check_container(std::span<const std::uint8_t> bytes, const std::string& file);
 
 /// Parses JSON that nests no deeper than any real glTF does: later readers recurse over it.

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
+#include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 
+#include "core/quote.hpp"
 #include "scene/gltf_container.hpp"
+#include "scene/gltf_mend.hpp"
 #include "scene/gltf_schema.hpp"
 #include "scene/scene_folder.hpp"
 #include "scene/sha256.hpp"
@@ -47,81 +50,63 @@ void check_extensions(GltfFile& file) {
   }
 }
 
-// What tinygltf asks for while it reads: files beside the scene, and a place for images' bytes.
-struct Callbacks {
-  SceneFolder& folder;
-  std::exception_ptr error;  // tinygltf passes over an image that it cannot read: kept to be thrown
-};
-
-bool file_exists(const std::string& name, void* user) { return static_cast<Callbacks*>(user)->folder.holds(name); }
-
-std::string same_path(const std::string& name, void*) { return name; }
-
-bool read_whole_file(std::vector<unsigned char>* out, std::string* err, const std::string& name, void* user) {
-  try {
-    *out = static_cast<Callbacks*>(user)->folder.read(name);
-    return true;
-  } catch (const Error& error) {
-    *err = error.what();
-    static_cast<Callbacks*>(user)->error = std::current_exception();
-    return false;
-  }
-}
-
-[[maybe_unused]] bool file_size(std::size_t* size, std::string*, const std::string& name, void* user) {
-  *size = static_cast<Callbacks*>(user)->folder.size_of(name);
-  return true;
-}
-
-bool write_nothing(std::string* err, const std::string&, const std::vector<unsigned char>&, void*) {
-  *err = "writing is not allowed";
-  return false;
-}
-
-// tinygltf 2.9 added a size callback and insists on having it.
-template <class T>
-void set_size_callback(T& callbacks) {
-  if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = &file_size;
-}
-
-// Images are decoded later, in parallel, and only those that a material uses.
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                  int size, void*) {
-  image->image.assign(bytes, bytes + size);
-  image->as_is = true;
-  return true;
-}
-
-// tinygltf quotes whole data URIs in its messages and gives several lines: the first one says what failed.
+// tinygltf gives several lines: the first one says what failed.
 std::string first_line(const std::string& text) {
-  std::string line = text.substr(0, text.find('\n'));
-  if (line.size() > 200) line = line.substr(0, 200) + "...";
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  const std::string line = quote(text.substr(0, text.find('\n')));
   return line.empty() ? "is not a valid glTF file" : line;
 }
 
-void read_model(GltfFile& file, SceneFolder& folder, const std::vector<std::uint8_t>& bytes, bool binary) {
-  Callbacks callbacks{folder, {}};
-  tinygltf::FsCallbacks fs{};
-  fs.FileExists = &file_exists;
-  fs.ExpandFilePath = &same_path;
-  fs.ReadWholeFile = &read_whole_file;
-  fs.WriteWholeFile = &write_nothing;
-  set_size_callback(fs);
-  fs.user_data = &callbacks;
+// Takes properties out of a document for as long as it lives.
+class Without {
+ public:
+  explicit Without(nlohmann::json& document) : document_(document) {
+    for (const char* key : {"buffers", "images", "cameras", "animations", "extensions"}) {
+      const auto found = document_.find(key);
+      if (found == document_.end()) continue;
+      kept_[key] = std::move(*found);
+      document_.erase(found);
+    }
+  }
+  ~Without() {
+    for (auto& [key, value] : kept_) document_[key] = std::move(value);
+  }
+  Without(const Without&) = delete;
+  Without& operator=(const Without&) = delete;
 
+ private:
+  nlohmann::json& document_;
+  std::map<std::string, nlohmann::json> kept_;
+};
+
+// Indices are put where they belong afterwards: tinygltf refuses those of accessors without a bufferView.
+std::vector<std::vector<int>> take_indices(nlohmann::json& document) {
+  std::vector<std::vector<int>> all;
+  for (auto& mesh : document["meshes"]) {
+    std::vector<int>& of_mesh = all.emplace_back();
+    for (auto& primitive : mesh["primitives"]) {
+      const auto indices = primitive.find("indices");
+      of_mesh.push_back(indices == primitive.end() ? -1 : indices->get<int>());
+      if (indices != primitive.end()) primitive.erase(indices);
+    }
+  }
+  return all;
+}
+
+// The document as it was checked and mended, without what tinygltf would look for in files or in the .glb's chunks:
+// that is read by GltfBytes, from where it was checked to lie.
+void read_model(GltfFile& file) {
+  const Without without(file.json);
+  const std::vector<std::vector<int>> indices = take_indices(file.json);
+  const std::string text = file.json.dump();
+  if (text.size() > std::numeric_limits<unsigned>::max()) throw limit_error(file.path, "is larger than 4 GiB");
   tinygltf::TinyGLTF reader;
-  reader.SetFsCallbacks(fs);
-  reader.SetImageLoader(&keep_encoded, nullptr);
   std::string err, warn;
-  const auto size = static_cast<unsigned>(bytes.size());
-  const bool read = binary
-                        ? reader.LoadBinaryFromMemory(&file.model, &err, &warn, bytes.data(), size, folder.path())
-                        : reader.LoadASCIIFromString(&file.model, &err, &warn,
-                                                     reinterpret_cast<const char*>(bytes.data()), size, folder.path());
-  if (callbacks.error) std::rethrow_exception(callbacks.error);
-  if (!read) throw input_error(file.path, first_line(err));
+  if (!reader.LoadASCIIFromString(&file.model, &err, &warn, text.data(), static_cast<unsigned>(text.size()), ""))
+    throw input_error(file.path, first_line(err));
+  for (std::size_t m = 0; m < indices.size() && m < file.model.meshes.size(); ++m) {
+    std::vector<tinygltf::Primitive>& primitives = file.model.meshes[m].primitives;
+    for (std::size_t p = 0; p < indices[m].size() && p < primitives.size(); ++p) primitives[p].indices = indices[m][p];
+  }
 }
 
 // The rest of the loader names objects by their index in the JSON, so nothing may have been dropped on the way.
@@ -132,15 +117,11 @@ void check_same_objects(const GltfFile& file) {
   };
   same("accessors", file.model.accessors.size());
   same("bufferViews", file.model.bufferViews.size());
-  same("buffers", file.model.buffers.size());
   same("meshes", file.model.meshes.size());
   same("nodes", file.model.nodes.size());
   same("materials", file.model.materials.size());
   same("textures", file.model.textures.size());
-  same("images", file.model.images.size());
   same("skins", file.model.skins.size());
-  same("cameras", file.model.cameras.size());
-  same("animations", file.model.animations.size());
   for (std::size_t m = 0; m < file.model.meshes.size(); ++m) {
     if (file.model.meshes[m].primitives.size() != file.json["meshes"][m]["primitives"].size()) {
       file.fail(at("meshes", m), "could not be read whole");
@@ -155,15 +136,17 @@ GltfFile open_gltf(const std::string& path, const LoadLimits& limits) {
   file.path = path;
   file.limits = limits;
   SceneFolder folder(path, limits.file_bytes);
-  const std::vector<std::uint8_t> bytes = folder.read_scene();
+  std::vector<std::uint8_t> bytes = folder.read_scene();
   file.sha256 = sha256_hex(bytes);
 
   const GltfContainer container = check_container(bytes, path);
+  for (const std::string& oddity : container.oddities) file.warn("file", oddity);
   file.json = parse_json(container.json, path);
-  check_gltf_document(file.json, path);
+  mend_document(file.json, file.warnings);
+  file.broken = check_gltf_document(file.json, path);
   check_extensions(file);
-  folder.check_references(file.json, container.binary.size());
-  read_model(file, folder, bytes, container.is_binary);
+  file.bytes = std::make_unique<GltfBytes>(std::move(folder), std::move(bytes), container.binary);
+  read_model(file);
   check_same_objects(file);
   return file;
 }

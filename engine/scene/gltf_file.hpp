@@ -5,13 +5,18 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
+#include "scene/broken_objects.hpp"
+#include "scene/gltf_bytes.hpp"
 #include "scene/gltf_loader.hpp"
+#include "scene/warning_list.hpp"
 
 namespace sheaf {
 
@@ -19,9 +24,12 @@ struct GltfFile {
   std::string path;
   LoadLimits limits;
   std::string sha256;
-  nlohmann::json json;    // the same document as `model`: what tinygltf does not read (extensions) is read from here
-  tinygltf::Model model;  // images hold their encoded bytes
-  std::vector<std::string> warnings;
+  nlohmann::json json;  // the same document as `model`: what tinygltf does not read (extensions) is read from here
+  tinygltf::Model
+      model;  // without buffers, images, cameras and animations: those are read from the JSON and by `bytes`
+  std::unique_ptr<GltfBytes> bytes;
+  BrokenObjects broken;
+  mutable WarningList warnings;
   std::vector<std::string> extensions_ignored;
 
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
@@ -30,7 +38,28 @@ struct GltfFile {
   [[noreturn]] void over_limit(const std::string& place, const std::string& reason) const {
     throw limit_error(path + ": " + place, reason);
   }
-  void warn(const std::string& place, const std::string& reason) { warnings.push_back(place + ": " + reason); }
+  void warn(const std::string& place, const std::string& reason) const { warnings.add(place, reason); }
+
+  /// An error's text without the file's name: what `fail` was given.
+  [[nodiscard]] Fault fault_of(std::string text) const {
+    const std::string shown = one_line(bounded_words(path + ": "));
+    if (text.starts_with(shown)) text.erase(0, shown.size());
+    const std::size_t colon = std::min(text.find(": "), text.size());
+    return {text.substr(0, colon), text.substr(std::min(colon + 2, text.size()))};
+  }
+  void warn_of(const std::string& error, const std::string& consequence) const {
+    const Fault fault = fault_of(error);
+    warn(fault.place, fault.reason + ": " + consequence);
+  }
+
+  /// Throws where the object is one of the broken ones. Whatever uses an object asks first.
+  void require(const std::string& collection, std::size_t index) const {
+    if (const Fault* fault = broken.find(collection, index)) fail(fault->place, fault->reason);
+  }
+  [[nodiscard]] std::size_t count(const char* collection) const {
+    const auto found = json.find(collection);
+    return found == json.end() ? 0 : found->size();
+  }
 };
 
 [[nodiscard]] GltfFile open_gltf(const std::string& path, const LoadLimits& limits);

@@ -15,10 +15,10 @@
 namespace sheaf {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
+using Bytes = std::span<const std::uint8_t>;
 
 // The kind of file, by its first bytes: mimeType is often wrong.
-const char* format_of(const Bytes& bytes) {
+const char* format_of(Bytes bytes) {
   const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 12));
   if (head.starts_with("\x89PNG")) return "PNG";
   if (head.starts_with("\xff\xd8\xff")) return "JPEG";
@@ -33,9 +33,9 @@ const char* format_of(const Bytes& bytes) {
 
 // Checks the header, so that what decoding will allocate is known before it starts.
 std::uint64_t decoded_size(const GltfFile& file, std::uint32_t index) {
-  const Bytes& bytes = file.model.images[index].image;
+  const Bytes bytes = file.bytes->image(file, index);
   const std::string place = at("images", index);
-  if (bytes.empty()) file.fail(place, "could not be read");
+  if (bytes.empty()) file.fail(place, "is empty");
   const std::string format = format_of(bytes);
   if (format != "PNG" && format != "JPEG")
     file.fail(place, format + " images are not supported, only PNG and JPEG are");
@@ -63,18 +63,19 @@ const char* no_reason() {
 }
 
 Image decode(const GltfFile& file, std::uint32_t index) {
-  const tinygltf::Image& source = file.model.images[index];
+  const Bytes bytes = file.bytes->image(file, index);  // `decoded_size` asked first: no thread reads a file
   const char* const none = no_reason();
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(source.image.data(), static_cast<int>(source.image.size()), &width, &height, &channels, 4),
+      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
       &stbi_image_free);
   if (!pixels) {
     const char* const reason = stbi_failure_reason();
     file.fail(at("images", index), std::string("cannot be decoded: ") + (reason == none ? "it is damaged" : reason));
   }
   Image image;
-  image.name = source.name.empty() ? source.uri : source.name;
+  const nlohmann::json& source = file.json["images"][index];
+  image.name = source.value("name", source.value("uri", ""));
   image.width = static_cast<std::uint32_t>(width);
   image.height = static_cast<std::uint32_t>(height);
   image.rgba.assign(pixels.get(), pixels.get() + std::size_t{image.width} * image.height * 4);

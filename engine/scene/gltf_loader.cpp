@@ -20,6 +20,34 @@ std::vector<bool> meshes_in_use(const GltfFile& file, const Scene& scene) {
   return used;
 }
 
+// Materials of those meshes' primitives that are surfaces.
+std::vector<bool> materials_in_use(const GltfFile& file, const std::vector<bool>& meshes) {
+  std::vector<bool> used(file.model.materials.size(), false);
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (!meshes[m]) continue;
+    for (const tinygltf::Primitive& primitive : file.model.meshes[m].primitives) {
+      if (primitive.material >= 0 && primitive.mode >= TINYGLTF_MODE_TRIANGLES)
+        used[static_cast<std::size_t>(primitive.material)] = true;
+    }
+  }
+  return used;
+}
+
+// What of the chosen scene breaks the format's rules is refused, and the rest is named.
+void require_nodes(const GltfFile& file, const Scene& scene) {
+  for (const std::uint32_t index : scene.order) {
+    file.require("nodes", index);
+    if (scene.nodes[index].light != none) file.require("lights", scene.nodes[index].light);
+  }
+}
+
+void report_broken(const GltfFile& file) {
+  for (const auto& [collection, faults] : file.broken.all()) {
+    if (collection == "cameras" || collection == "animations") continue;  // named when they were read
+    for (const auto& [index, fault] : faults) file.warn(fault.place, fault.reason + ", but nothing uses it");
+  }
+}
+
 Scene build_scene(GltfFile& file, const std::string& scene_selector) {
   Scene scene;
   scene.path = file.path;
@@ -28,11 +56,15 @@ Scene build_scene(GltfFile& file, const std::string& scene_selector) {
   load_lights(file, scene);
   load_nodes(file, scene);
   select_scene(file, scene_selector, scene);
-  load_materials(file, scene);
-  const std::vector<MeshEntry> meshes = load_meshes(file, meshes_in_use(file, scene), scene);
+  require_nodes(file, scene);
+  const std::vector<bool> used = meshes_in_use(file, scene);
+  load_materials(file, materials_in_use(file, used), scene);
+  const std::vector<MeshEntry> meshes = load_meshes(file, used, scene);
   bind_meshes(file, meshes, scene);
   load_animations(file, meshes, scene);
-  scene.warnings = std::move(file.warnings);
+  file.bytes->report_unused(file);
+  report_broken(file);
+  scene.warnings = file.warnings.take();
   scene.extensions_ignored = std::move(file.extensions_ignored);
   return scene;
 }

@@ -29,6 +29,7 @@ class MaterialReader {
     const tinygltf::Material& source = file_.model.materials[index];
     const json& object = file_.json["materials"][index];
     place_ = at("materials", index);
+    file_.require("materials", index);
     Material out;
     out.name = source.name;
     read_metallic_roughness(source, object, out);
@@ -110,8 +111,12 @@ class MaterialReader {
     }
     if (e.contains("attenuationDistance")) {
       const double distance = number_or(e, "attenuationDistance", 0);
-      if (!(distance > 0)) file_.fail(place_ + ".attenuationDistance", "must be larger than 0");
-      out.attenuation_distance = static_cast<float>(distance);
+      if (distance < 0) file_.fail(place_ + ".attenuationDistance", "must be larger than 0");
+      if (distance == 0) {
+        file_.warn(place_ + ".attenuationDistance", "is 0, taken as infinite");
+      } else {
+        out.attenuation_distance = static_cast<float>(distance);
+      }
     }
     if (const json* color = member(e, "attenuationColor")) {
       for (int c = 0; c < 3; ++c) {
@@ -150,6 +155,7 @@ class MaterialReader {
   std::uint32_t texture(std::uint32_t index) {
     const auto [known, is_new] = textures_.try_emplace(index, none);
     if (!is_new) return known->second;
+    file_.require("textures", index);
     const tinygltf::Texture& source = file_.model.textures[index];
     if (source.source < 0) {
       file_.warn(at("textures", index), "has no image that can be read and is ignored");
@@ -167,6 +173,7 @@ class MaterialReader {
   }
 
   void read_sampler(std::size_t index, Texture& out) const {
+    file_.require("samplers", index);
     const tinygltf::Sampler& sampler = file_.model.samplers[index];
     const auto wrap = [&](int mode, const char* key) {
       if (mode == TINYGLTF_TEXTURE_WRAP_REPEAT) return Wrap::repeat;
@@ -191,9 +198,12 @@ class MaterialReader {
 
 }  // namespace
 
-void load_materials(GltfFile& file, Scene& scene) {
+void load_materials(GltfFile& file, const std::vector<bool>& used, Scene& scene) {
   MaterialReader reader(file, scene);
-  for (std::size_t i = 0; i < file.model.materials.size(); ++i) scene.materials.push_back(reader.read(i));
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    scene.materials.push_back(used[i] ? reader.read(i) : Material{});
+    scene.materials.back().name = file.model.materials[i].name;
+  }
   scene.materials.emplace_back();
   scene.materials.back().name = "default";
   reader.decode_used_images();

@@ -22,6 +22,7 @@ struct Reader {
   const tinygltf::Primitive& primitive;
   std::string place;
   std::size_t vertices = 0;
+  bool skinned = false;  // a node gives the mesh a skin
 
   [[nodiscard]] int accessor(const char* attribute) const {
     const auto found = primitive.attributes.find(attribute);
@@ -209,7 +210,7 @@ void read_vertices(const Reader& in, Mesh& mesh, const Material& material) {
   mesh.uv0 = attribute<glm::vec2>(in, "TEXCOORD_0", Components::floats_quantized);
   mesh.uv1 = attribute<glm::vec2>(in, "TEXCOORD_1", Components::floats_quantized);
   mesh.colors = read_colors(in);
-  read_skinning(in, mesh);
+  if (in.skinned) read_skinning(in, mesh);
   read_targets(in, mesh);
 }
 
@@ -304,18 +305,29 @@ void finish_entry(GltfFile& file, std::size_t m, const Scene& scene, MeshEntry& 
   if (skinned != 0 && skinned != entry.count) file.fail(place, "some primitives have JOINTS_0 and others have not");
 }
 
+std::vector<bool> meshes_with_skin(const GltfFile& file, const Scene& scene) {
+  std::vector<bool> skinned(file.model.meshes.size(), false);
+  for (const std::uint32_t index : scene.order) {
+    const tinygltf::Node& node = file.model.nodes[index];
+    if (node.mesh >= 0 && node.skin >= 0) skinned[static_cast<std::size_t>(node.mesh)] = true;
+  }
+  return skinned;
+}
+
 }  // namespace
 
 std::vector<MeshEntry> load_meshes(GltfFile& file, const std::vector<bool>& wanted, Scene& scene) {
   const Accessors accessors(file);
+  const std::vector<bool> skinned = meshes_with_skin(file, scene);
   std::vector<MeshEntry> entries(file.model.meshes.size());
   std::uint64_t triangles = 0, vertices = 0;
   for (std::size_t m = 0; m < entries.size(); ++m) {
     entries[m].first = static_cast<std::uint32_t>(scene.meshes.size());
     if (!wanted[m]) continue;
+    file.require("meshes", m);
     const tinygltf::Mesh& source = file.model.meshes[m];
     for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-      Reader in{file, accessors, source.primitives[p], at("meshes", m) + "." + at("primitives", p)};
+      Reader in{file, accessors, source.primitives[p], at("meshes", m) + "." + at("primitives", p), 0, skinned[m]};
       if (const int position = in.accessor("POSITION"); position >= 0) in.vertices = accessors.count(position);
       const int index = in.primitive.material;
       // The default material stands after the file's own.

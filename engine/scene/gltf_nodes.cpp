@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/type_ptr.hpp>
+
+#include "scene/last_row.hpp"
 
 namespace sheaf {
 namespace {
@@ -13,8 +14,9 @@ void read_transform(GltfFile& file, const tinygltf::Node& source, const std::str
   if (!source.matrix.empty()) {
     node.has_matrix = true;
     node.matrix = glm::make_mat4(source.matrix.data());
-    if (glm::row(node.matrix, 3) != glm::dvec4(0, 0, 0, 1))
-      file.fail(place + ".matrix", "has a last row other than 0 0 0 1");
+    const Rounding rounding = round_last_row(node.matrix);
+    if (rounding == Rounding::impossible) file.fail(place + ".matrix", "has a last row other than 0 0 0 1");
+    if (rounding == Rounding::rounded) file.warn(place + ".matrix", "has a last row near 0 0 0 1, taken as that");
     return;
   }
   if (!source.translation.empty()) node.translation = glm::make_vec3(source.translation.data());
@@ -101,6 +103,7 @@ void select_scene(GltfFile& file, const std::string& selector, Scene& scene) {
       if (scene.nodes[i].parent == none) scene.roots.push_back(i);
     }
   } else {
+    file.require("scenes", chosen);
     const std::vector<int>& nodes = file.model.scenes[chosen].nodes;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const auto node = static_cast<std::uint32_t>(nodes[i]);

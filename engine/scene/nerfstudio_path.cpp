@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Nerfstudio's camera_path.json: one camera a frame, evenly spaced, matrices row-major, field of view vertical in
-// degrees.
+// Nerfstudio's camera_path.json: one camera a frame, evenly spaced, matrices row-major, flat or as
+// rows, field of view vertical in degrees, a camera's own or the default for all.
 #include <glm/gtc/type_ptr.hpp>
 #include <numbers>
 
@@ -10,15 +10,17 @@
 namespace sheaf {
 namespace {
 
-CameraKey read_camera(const JsonObject& camera) {
+double read_fov(const JsonObject& object, const char* key) {
+  const double degrees = object.number(key);
+  if (!(degrees > 0 && degrees < 180)) object.fail(key, "must be between 0 and 180");
+  return degrees * std::numbers::pi / 180;
+}
+
+CameraKey read_camera(const JsonObject& camera, double default_fov) {
   CameraKey key;
-  const std::vector<double> rows = camera.numbers("camera_to_world", 16);
+  const std::vector<double> rows = camera.rows_of_4("camera_to_world");
   pose_from_matrix(camera, "camera_to_world", glm::transpose(glm::make_mat4(rows.data())), key);
-  if (camera.has("fov")) {
-    const double degrees = camera.number("fov");
-    if (!(degrees > 0 && degrees < 180)) camera.fail("fov", "must be between 0 and 180");
-    key.fov = degrees * std::numbers::pi / 180;
-  }
+  key.fov = camera.has("fov") ? read_fov(camera, "fov") : default_fov;
   if (camera.has("aspect") && !(camera.number("aspect") > 0)) camera.fail("aspect", "must be larger than 0");
   return key;
 }
@@ -43,7 +45,8 @@ CameraPath read_nerfstudio_path(const JsonObject& object, const nlohmann::json& 
     }
   }
   CameraPath path;
-  for (const JsonObject& camera : object.objects("camera_path")) path.keys.push_back(read_camera(camera));
+  const double fov = object.has("default_fov") ? read_fov(object, "default_fov") : CameraKey{}.fov;
+  for (const JsonObject& camera : object.objects("camera_path")) path.keys.push_back(read_camera(camera, fov));
   path.fps = frames_a_second(object, document, path.keys.size());
   for (std::size_t i = 0; i < path.keys.size(); ++i) path.keys[i].time = static_cast<double>(i) / *path.fps;
   return path;

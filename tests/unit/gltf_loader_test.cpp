@@ -223,6 +223,8 @@ TEST(GltfLoader, MaterialsWithTheirExtensions) {
                         {"KHR_materials_volume",
                          {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {1, 0, 0.5}}}}}}});
   b.add("materials", {{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}, {"KHR_materials_unlit", json::object()}}}});
+  const int positions = b.accessor(unit_triangle, FLOAT, "VEC3", 3);
+  for (const int material : {0, 1}) b.node_with({{"POSITION", positions}}, {{"material", material}});
   const Scene scene = load(b);
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.emissive, glm::vec3(4, 2, 0));

@@ -70,7 +70,10 @@ def collect_scene(scene: str | os.PathLike[str] | bytes) -> SceneFiles:
     if suffix == ".zip":
         return SceneFiles(name, path)
     document = _document(str(path), _json_text(path))
-    beside = {uri: _beside(path, place, uri) for place, uri in _external_uris(str(path), document)}
+    beside = {}
+    for place, uri in _external_uris(str(path), document):
+        if _is_used(document, place) or (path.parent / uri).is_file():
+            beside[uri] = _beside(path, place, uri)
     return SceneFiles(name, path, beside)
 
 
@@ -103,7 +106,7 @@ def _glb_json(name: str, data: bytes) -> bytes:
     length, kind = struct.unpack_from("<II", data, 12)
     if kind != _GLB_JSON or len(data) < 20 + length:
         raise SceneError(f"{name}: its JSON chunk is missing or cut short")
-    return data[20 : 20 + length]
+    return data[20 : 20 + length].rstrip(b"\0")
 
 
 def _document(name: str, text: bytes) -> dict[str, Any]:
@@ -132,6 +135,17 @@ def _external_uris(name: str, document: dict[str, Any]) -> Iterator[tuple[str, s
                 yield place, relative
 
 
+def _is_used(document: dict[str, Any], place: str) -> bool:
+    """Whether anything refers to `buffers[3]` or `images[3]`. What nothing refers to may be missing."""
+    kind, index = place.rstrip("]").split("[")
+    owners, key = ("bufferViews", "buffer") if kind == "buffers" else ("textures", "source")
+    entries = document.get(owners)
+    return any(
+        isinstance(entry, dict) and entry.get(key) == int(index)
+        for entry in (entries if isinstance(entries, list) else [])
+    )
+
+
 def _relative(name: str, place: str, uri: Any) -> str:
     """The URI as a path below the scene's folder, normalised."""
     if not isinstance(uri, str):
@@ -139,8 +153,15 @@ def _relative(name: str, place: str, uri: Any) -> str:
     path = unquote(uri)
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", path) or path.startswith(("/", "\\")):
         raise SceneError(f"{name}: {place}: {uri!r} is not relative to the scene's folder")
-    steps = [step for step in path.split("/") if step not in ("", ".")]
-    if not steps or ".." in steps or "\\" in path or any(ord(character) < 32 for character in path):
+    steps: list[str] = []
+    climbs = False
+    for step in path.split("/"):
+        if step == "..":
+            climbs = climbs or not steps
+            steps = steps[:-1]
+        elif step not in ("", "."):
+            steps.append(step)
+    if not steps or climbs or "\\" in path or any(ord(character) < 32 for character in path):
         raise SceneError(f"{name}: {place}: {uri!r} does not stay in the scene's folder")
     return "/".join(steps)
 

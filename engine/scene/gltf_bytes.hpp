@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The bytes behind a glTF file's buffers, views and images, read when they are first asked for: what nothing uses is
+// never opened.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene_folder.hpp"
+
+namespace sheaf {
+
+struct GltfFile;
+
+class GltfBytes {
+ public:
+  /// `binary` lies in `scene_bytes`.
+  GltfBytes(SceneFolder folder, std::vector<std::uint8_t> scene_bytes, std::span<const std::uint8_t> binary)
+      : folder_(std::move(folder)), scene_bytes_(std::move(scene_bytes)), binary_(binary) {}
+
+  /// A bufferView's bytes. Its buffer may hold more or fewer than it says, as long as the view lies inside.
+  [[nodiscard]] std::span<const std::uint8_t> view(const GltfFile& file, std::size_t index);
+
+  /// An image's encoded bytes.
+  [[nodiscard]] std::span<const std::uint8_t> image(const GltfFile& file, std::size_t index);
+
+  /// Warns of buffers, views and images that could not be read, though nothing needs them.
+  void report_unused(const GltfFile& file) const;
+
+ private:
+  struct Resource {
+    std::vector<std::uint8_t> own;        // unless it lies in the scene file
+    std::span<const std::uint8_t> bytes;  // of `own`, or of the scene file
+  };
+  [[nodiscard]] std::span<const std::uint8_t> buffer(const GltfFile& file, std::size_t index);
+  [[nodiscard]] std::vector<std::uint8_t> from_uri(const GltfFile& file, const std::string& uri,
+                                                   const std::string& place, std::uint64_t most);
+  void find_reach(const GltfFile& file);
+  void report_uri(const GltfFile& file, const std::string& collection, std::size_t index) const;
+
+  SceneFolder folder_;
+  std::vector<std::uint8_t> scene_bytes_;
+  std::span<const std::uint8_t> binary_;
+  std::map<std::size_t, Resource> buffers_, images_;  // by index, those that were asked for
+  std::set<std::size_t> views_;
+  std::vector<std::uint64_t> reach_;
+};
+
+}  // namespace sheaf
