@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -57,8 +59,12 @@ class Job {
   void write(RenderedFrame frame, const FrameRequest& request);
   void finish_writing();
   void save_stats(bool last);
-  [[nodiscard]] bool already_there(std::int64_t number) const;
   [[nodiscard]] fs::path folder() const { return static_cast<const std::string&>(options_.out); }
+  [[nodiscard]] std::string path_of(std::int64_t number) const;
+  [[nodiscard]] FrameInputs inputs_of(std::int64_t number) const;
+  [[nodiscard]] std::string why_again(std::int64_t number) const;
+  [[nodiscard]] std::vector<std::int64_t> wanted_frames();
+  void list_inputs() const;
   [[nodiscard]] double seconds(std::int64_t number) const { return static_cast<double>(number) / fps_; }
 
   RenderOptions& options_;
@@ -69,6 +75,7 @@ class Job {
   CameraSource camera_;
   FrameNames names_;
   double fps_;
+  FrameInputs inputs_;  // but for number and time
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<DumpWriter> dump_;
   RunStats stats_;
@@ -90,24 +97,78 @@ Job::Job(RenderOptions& options, Progress& progress)
   if (const auto warning = compression_warning(options.compression, options.settings.layers); !warning.empty())
     progress_.warning(warning);
   for (const auto& warning : scene_.warnings) progress_.warning(options.scene + ": " + warning);
-  make_folder(options.out);
-  if (!options.dump.empty()) {
-    make_folder(options.dump);
-    dump_ = std::make_unique<DumpWriter>(options.dump);
-  }
+  auto settings = settings_json(options);
+  settings["fps"] = fps_;
+  if (const std::string& name = options.scene_name; !name.empty()) settings["scene-name"] = name;
+  settings["animation"] = animations_;
+  settings["camera"] = camera_.identity();
+  for (const char* name : {"aov", "compression"}) settings[name] = find_setting(name)->access.show(options);
+  // It decides what is counted.
+  if (options.settings.layers.tests) settings["strategy"] = find_setting("strategy")->access.show(options);
+  inputs_ = {SHEAF_VERSION, scene_.sha256, settings.dump(), 0, 0};
 }
 
-bool Job::already_there(std::int64_t number) const {
-  const auto path = (folder() / names_.frame(number)).string();
-  return options_.resume && exr_is_whole(path, options_.settings.width, options_.settings.height);
+std::string Job::path_of(std::int64_t number) const { return (folder() / names_.frame(number)).string(); }
+
+FrameInputs Job::inputs_of(std::int64_t number) const {
+  FrameInputs inputs = inputs_;
+  inputs.frame = number;
+  inputs.time_s = seconds(number);
+  return inputs;
+}
+
+// Why a frame that is there has to be rendered again; empty where it need not.
+std::string Job::why_again(std::int64_t number) const {
+  const std::string path = path_of(number);
+  const auto there = read_frame_inputs(path);
+  if (!there) return "not whole, or not of this program";
+  const std::string different = difference(*there, inputs_of(number));
+  if (!different.empty()) return different;
+  if (!exr_is_whole(path, options_.settings.width, options_.settings.height)) return "not whole";
+  if (options_.preview && !fs::is_regular_file(folder() / names_.preview(number))) return "no preview";
+  return {};
+}
+
+// All, or with --resume those that are not there as they would be rendered now; says which are not and why.
+std::vector<std::int64_t> Job::wanted_frames() {
+  if (!options_.resume) return frames_;
+  std::vector<std::int64_t> wanted;
+  std::map<std::string, std::size_t> reasons;
+  std::size_t again = 0;
+  for (const auto number : frames_) {
+    const bool there = fs::exists(path_of(number));
+    const std::string reason = there ? why_again(number) : "";
+    if (there && reason.empty()) continue;
+    wanted.push_back(number);
+    if (!there) continue;
+    ++again;
+    ++reasons[reason];
+  }
+  std::string text;
+  for (const auto& [reason, count] : reasons)
+    text += (text.empty() ? "" : "; ") + reason + (reasons.size() > 1 ? " (" + std::to_string(count) + ")" : "");
+  if (again > 0)
+    progress_.warning("--resume: " + std::to_string(again) + (again == 1 ? " frame that is" : " frames that are") +
+                      " there will be rendered again: " + text);
+  return wanted;
+}
+
+// One object a line, for who holds frames that this machine does not see.
+void Job::list_inputs() const {
+  for (const auto number : frames_) {
+    auto line = to_json(inputs_of(number));
+    line["file"] = names_.frame(number);
+    std::printf("%s\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  }
 }
 
 void Job::write(RenderedFrame frame, const FrameRequest& request) {
   const auto number = request.number;
   const auto begun = Clock::now();
-  const auto path = (folder() / names_.frame(number)).string();
-  const auto attributes = frame_attributes(scene_, options_, request.camera, number, request.time_s, fps_,
-                                           joined(frame.stats.strategies));
+  const auto path = path_of(number);
+  const auto attributes =
+      frame_attributes(inputs_of(number), request.camera, static_cast<double>(frame.layers.width) / frame.layers.height,
+                       fps_, joined(frame.stats.strategies));
   if (options_.preview) {
     const auto preview = (folder() / names_.preview(number)).string();
     write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
@@ -186,9 +247,16 @@ void Job::save_stats(bool last) {
 
 int Job::run() {
   watch_signals();
-  std::vector<std::int64_t> wanted;
-  for (const auto number : frames_)
-    if (!already_there(number)) wanted.push_back(number);
+  if (options_.list_inputs) {
+    list_inputs();
+    return 0;
+  }
+  make_folder(options_.out);
+  if (!options_.dump.empty()) {
+    make_folder(options_.dump);
+    dump_ = std::make_unique<DumpWriter>(options_.dump);
+  }
+  const std::vector<std::int64_t> wanted = wanted_frames();
   progress_.start(wanted.size());
   try {
     render_all(wanted);

@@ -2,10 +2,13 @@
 #include "frame/camera_source.hpp"
 
 #include <charconv>
+#include <initializer_list>
+#include <sstream>
 
 #include "core/error.hpp"
 #include "core/quote.hpp"
 #include "frame/scene_bounds.hpp"
+#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -49,6 +52,27 @@ CameraSource::CameraSource(const Scene& scene, const std::vector<std::uint32_t>&
   const WorldBox box = animated_bounds(scene, animations);
   framed_ = framing_view(box.empty() ? glm::dvec3(0) : box.lo, box.empty() ? glm::dvec3(0) : box.hi, aspect);
   description_ = "the scene framed whole";
+}
+
+std::string CameraSource::identity() const {
+  std::ostringstream text;
+  text.precision(17);
+  const auto numbers = [&](std::initializer_list<double> values) {
+    for (const double value : values) text << value << ' ';
+  };
+  if (node_ != none) return "node " + std::to_string(node_);
+  if (!path_) {  // its place may hang on the last bit of a sine: floats tell enough
+    text.precision(7);
+    const glm::dvec3 eye = framed_.to_world[3], back = framed_.to_world[2];
+    numbers({eye.x, eye.y, eye.z, back.x, back.y, back.z, framed_.tan_half_y});
+    return "framed " + text.str();
+  }
+  numbers({static_cast<double>(path_->interpolation), path_->loop ? 1.0 : 0.0, path_->fov_horizontal ? 1.0 : 0.0});
+  for (const CameraKey& k : path_->keys)
+    numbers({k.time, k.position.x, k.position.y, k.position.z, k.rotation.x, k.rotation.y, k.rotation.z, k.rotation.w,
+             k.orthographic ? k.ortho_height : k.fov, k.orthographic ? 1.0 : 0.0, k.near, k.far});
+  const std::string all = text.str();
+  return "path " + sha256_hex({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
 }
 
 CameraView CameraSource::at(const Pose& pose, double time_s) const {

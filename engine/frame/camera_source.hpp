@@ -22,6 +22,8 @@ class CameraSource {
   [[nodiscard]] bool moves() const { return moves_; }
   [[nodiscard]] std::optional<double> fps() const { return path_ ? path_->fps : std::nullopt; }
   [[nodiscard]] const std::string& description() const { return description_; }
+  /// The same for cameras that give the same views of a scene: of a path its numbers count, not its file's name.
+  [[nodiscard]] std::string identity() const;
 
  private:
   const Scene& scene_;

@@ -24,18 +24,18 @@ glm::dmat4 world_to_ndc(const CameraView& camera, double aspect) {
 
 }  // namespace
 
-FrameAttributes frame_attributes(const Scene& scene, const RenderOptions& options, const CameraView& camera,
-                                 std::int64_t frame, double time_s, double fps, const std::string& strategy) {
+FrameAttributes frame_attributes(const FrameInputs& inputs, const CameraView& camera, double aspect, double fps,
+                                 const std::string& strategy) {
   FrameAttributes a;
   a.world_to_camera = glm::inverse(camera.to_world);
-  a.world_to_ndc = world_to_ndc(camera, static_cast<double>(options.settings.width) / options.settings.height);
+  a.world_to_ndc = world_to_ndc(camera, aspect);
   a.fps = fps;
-  a.frame = frame;
-  a.time_s = time_s;
-  a.scene_sha256 = scene.sha256;
-  a.settings_json = settings_json(options).dump();
+  a.frame = inputs.frame;
+  a.time_s = inputs.time_s;
+  a.scene_sha256 = inputs.scene_sha256;
+  a.settings_json = inputs.settings_json;
   a.strategy = strategy;
-  a.version = SHEAF_VERSION;
+  a.version = inputs.version;
   return a;
 }
 

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "output/exr_writer.hpp"
+#include "output/frame_inputs.hpp"
 #include "scene/camera_path.hpp"
 #include "scene/scene.hpp"
 #include "settings/render_settings.hpp"
 
 namespace sheaf {
 
-[[nodiscard]] FrameAttributes frame_attributes(const Scene& scene, const RenderOptions& options,
-                                               const CameraView& camera, std::int64_t frame, double time_s, double fps,
-                                               const std::string& strategy);
+[[nodiscard]] FrameAttributes frame_attributes(const FrameInputs& inputs, const CameraView& camera, double aspect,
+                                               double fps, const std::string& strategy);
 
 }  // namespace sheaf

@@ -29,6 +29,9 @@ class GltfBytes {
   /// An image's encoded bytes.
   [[nodiscard]] std::span<const std::uint8_t> image(const GltfFile& file, std::size_t index);
 
+  /// SHA-256 of the scene file and of what has been read beside it.
+  [[nodiscard]] std::string sha256() const { return folder_.sha256(); }
+
   /// Warns of buffers, views and images that could not be read, though nothing needs them.
   void report_unused(const GltfFile& file) const;
 

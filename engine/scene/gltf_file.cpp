@@ -13,7 +13,6 @@
 #include "scene/gltf_mend.hpp"
 #include "scene/gltf_schema.hpp"
 #include "scene/scene_folder.hpp"
-#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -137,7 +136,6 @@ GltfFile open_gltf(const std::string& path, const LoadLimits& limits) {
   file.limits = limits;
   SceneFolder folder(path, limits.file_bytes);
   std::vector<std::uint8_t> bytes = folder.read_scene();
-  file.sha256 = sha256_hex(bytes);
 
   const GltfContainer container = check_container(bytes, path);
   for (const std::string& oddity : container.oddities) file.warn("file", oddity);

@@ -23,7 +23,6 @@ namespace sheaf {
 struct GltfFile {
   std::string path;
   LoadLimits limits;
-  std::string sha256;
   nlohmann::json json;  // the same document as `model`: what tinygltf does not read (extensions) is read from here
   tinygltf::Model
       model;  // without buffers, images, cameras and animations: those are read from the JSON and by `bytes`

@@ -51,7 +51,6 @@ void report_broken(const GltfFile& file) {
 Scene build_scene(GltfFile& file, const std::string& scene_selector) {
   Scene scene;
   scene.path = file.path;
-  scene.sha256 = file.sha256;
   load_cameras(file, scene);
   load_lights(file, scene);
   load_nodes(file, scene);
@@ -64,6 +63,7 @@ Scene build_scene(GltfFile& file, const std::string& scene_selector) {
   load_animations(file, meshes, scene);
   file.bytes->report_unused(file);
   report_broken(file);
+  scene.sha256 = file.bytes->sha256();
   scene.warnings = file.warnings.take();
   scene.extensions_ignored = std::move(file.extensions_ignored);
   return scene;

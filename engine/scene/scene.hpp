@@ -145,7 +145,7 @@ struct Animation {
 
 struct Scene {
   std::string path;    // as given
-  std::string sha256;  // of the scene file's own bytes, hex; names the scene in EXR attributes
+  std::string sha256;  // of the scene file and of what it refers to beside it, hex; names the scene in EXR attributes
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<Material> materials;  // at least one: the default

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/quote.hpp"
 #include "scene/data_uri.hpp"
+#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -41,7 +42,9 @@ SceneFolder::SceneFolder(const std::string& scene_path, std::uint64_t byte_budge
 }
 
 std::vector<std::uint8_t> SceneFolder::read_scene() {
-  return read(scene_path_, std::numeric_limits<std::uint64_t>::max());
+  std::vector<std::uint8_t> bytes = read_bytes(scene_path_, std::numeric_limits<std::uint64_t>::max());
+  scene_sha256_ = sha256_hex(bytes);
+  return bytes;
 }
 
 Located SceneFolder::locate(const std::string& uri) const {
@@ -86,6 +89,19 @@ Located SceneFolder::locate_name(const std::string& name, const std::string& sho
 }
 
 std::vector<std::uint8_t> SceneFolder::read(const fs::path& path, std::uint64_t most) {
+  std::vector<std::uint8_t> bytes = read_bytes(path, most);
+  sha256_of_[path.lexically_relative(root_).generic_string()] = sha256_hex(bytes);
+  return bytes;
+}
+
+std::string SceneFolder::sha256() const {
+  if (sha256_of_.empty()) return scene_sha256_;
+  std::string all = scene_sha256_ + "\n";
+  for (const auto& [name, hash] : sha256_of_) all += hash + " " + name + "\n";
+  return sha256_hex({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
+}
+
+std::vector<std::uint8_t> SceneFolder::read_bytes(const fs::path& path, std::uint64_t most) {
   std::error_code error;
   const std::uint64_t size = std::min<std::uint64_t>(fs::file_size(path, error), most);
   if (error) throw io_error(path.string(), error.message());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,12 +30,18 @@ class SceneFolder {
   /// The first `most` bytes of a located file, or all of a shorter one.
   [[nodiscard]] std::vector<std::uint8_t> read(const std::filesystem::path& path, std::uint64_t most);
 
+  /// SHA-256 of all that was read: the scene file's own where it is all there is.
+  [[nodiscard]] std::string sha256() const;
+
  private:
+  [[nodiscard]] std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path, std::uint64_t most);
   [[nodiscard]] Located locate_name(const std::string& name, const std::string& shown) const;
 
   std::string scene_path_;
   std::filesystem::path root_;  // canonical
   std::uint64_t left_;
+  std::string scene_sha256_;
+  std::map<std::string, std::string> sha256_of_;  // of what was read beside the scene, by path within the folder
 };
 
 }  // namespace sheaf
