@@ -23,8 +23,9 @@ float size_of(Rows m) { return max_of(max(max(abs(m.r0.xyz), abs(m.r1.xyz)), abs
 float determinant_of(Rows m, float scale) { return dot(scale * m.r0.xyz, cross(scale * m.r1.xyz, scale * m.r2.xyz)); }
 
 bool mirrored(Instance i, uint t) {
-  if (!MIRRORED_SKINS || i.mirrors == NO_INDEX) return false;
-  Deform d = deforms[i.mirrors];
+  uint deform = i.marks & INSTANCE_DEFORM;
+  if (!MIRRORED_SKINS || deform == INSTANCE_DEFORM) return false;
+  Deform d = deforms[deform];
   uvec3 v = triangle_vertices(i, t);
   Rows a = blended_matrix(d, v.x), b = blended_matrix(d, v.y), c = blended_matrix(d, v.z);
   float scale = inverse_scale(max(size_of(a), max(size_of(b), size_of(c))));
@@ -42,7 +43,8 @@ void main() {
   uint flags = materials[i.material].flags;
   uint word = job.x | ((flags & MATERIAL_MASK) != 0u ? TRIANGLE_MASKED : 0u) |
               ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u) |
-              (mirrored(i, t) ? TRIANGLE_MIRRORED : 0u);
+              ((flags & MATERIAL_ONE_SIDED) != 0u ? TRIANGLE_ONE_SIDED : 0u) |
+              (i.determinant_sign < 0.0 || mirrored(i, t) ? TRIANGLE_MIRRORED : 0u) | (i.marks & ~INSTANCE_DEFORM);
   if (POSED) {
     TriangleWords(frame.triangles_at).word[t] = word;
     return;

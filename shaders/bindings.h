@@ -29,6 +29,8 @@
 #define SPEC_FACE_TANGENTS 22
 #define SPEC_MIRRORED_SKINS 23
 #define SPEC_MORPHED_ATTRIBUTES 24
+#define SPEC_ONE_SIDED 25
+#define SPEC_RANKED 26
 
 // Roles of storage buffers. A role has the same binding number in every shader; a kernel declares the roles it reads.
 #define ROLE_FRAME 0

@@ -25,7 +25,7 @@ const Pending NOTHING_PENDING = Pending(NO_INDEX, 0.0, vec3(0));
 
 // A nearer hit, or an equal one of a lower triangle, is taken; where an alpha mask has a say it is left pending.
 void consider_nearest_corners(Corners corners, uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
-  TriangleHit h = intersect_corners(s, corners, tmin, best.t);
+  TriangleHit h = seen_corners(s, corners, tmin, best.t);
   if (!h.hit || (h.t == best.t && triangle > best.triangle)) return;
   if (MASKED && (corners.instance & TRIANGLE_MASKED) != 0u) {
     pending = Pending(triangle, h.t, h.barycentric);
@@ -74,7 +74,7 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   look_up_all(instance.material, TEXTURE_TRANSMISSION + 1u, uv0, uv1, texels);
   vec4 base = base_color_at(instance, m, v, b, texels[TEXTURE_BASE_COLOR]);
   if ((m.flags & MATERIAL_MASK) != 0u && base.a < m.alpha_cutoff) return true;
-  float cosine = dot(triangle_normal(corners.a, corners.b, corners.c, vec3(0)), direction) * front_sign(instance, corners);
+  float cosine = dot(triangle_normal(corners.a, corners.b, corners.c, vec3(0)), direction) * front_sign(corners);
   vec3 passed = vec3(0);
   if ((m.flags & MATERIAL_TRANSMISSIVE) != 0u) {
     float transmitted = clamp(m.transmission * texels[TEXTURE_TRANSMISSION].r, 0.0, 1.0);

@@ -25,7 +25,6 @@ layout(constant_id = SPEC_GLASS_ALPHA) const bool GLASS_ALPHA = false;  // what 
 
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
-  uint last;        // 1: no further generation
   uint direct;      // 1: the parents are the camera's rays, and were not written: raster knows what they hit
   uint sums;        // SUMS_…, of the pixels
   PUSH_LIST
@@ -51,7 +50,11 @@ Light light_together(uint index) {
 float mean_of(vec3 v) { return (v.r + v.g + v.b) / 3.0; }
 float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
 
-bool worth_a_ray(float weight) { return push.last == 0u && weight > 0.0 && weight >= frame.cutoff; }
+bool worth_a_ray(float weight) { return weight > 0.0 && weight >= frame.cutoff; }
+
+// Bounces, and blended surfaces gone straight through.
+bool may_bounce(Parent p) { return (p.past & 0xFFFFu) < frame.depth; }
+const uint ONE_BOUNCE = 1u, ONE_BLENDED = 1u << 16;
 
 uint volume_material(uint volume) {  // volumes are numbered at load; their materials come first in the buffer
   return volume - 1u;
@@ -111,7 +114,7 @@ void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight,
   } else {
     direction = tmax > 0.0 ? direction / tmax : -l;
   }
-  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayLoad(carried, 0.0, index));
+  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayLoad(carried, 0.0, index, 0u));
 }
 
 // What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's curvature, times
@@ -122,27 +125,50 @@ vec2 cone_after(Parent p, Surface s, float t, float scaling, float bending) {
 }
 
 void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
-  if (!worth_a_ray(largest(weight))) {
+  if (!may_bounce(p) || !worth_a_ray(largest(weight))) {
     no_ray_reflection(slot);
     return;
   }
   vec3 d = reflect(p.ray.direction, s.normal);
   if (!(dot(d, s.geometric) > 0.0)) d = reflect(p.ray.direction, s.geometric);
   d = safe_normalize(d, s.geometric);
-  vec3 o = offset_origin(s, s.geometric, 0.0);
-  store_ray(push.reflection_rays, slot, Ray(o, d, 0.0, INFINITY), p.pixel, RayLoad(weight, 0.0, p.medium));
+  vec3 o;
+  float tmin;
+  start_ray(s, s.geometric, d, s.rank_behind, o, tmin);
+  store_ray(push.reflection_rays, slot, Ray(o, d, tmin, INFINITY), p.pixel, RayLoad(weight, 0.0, p.medium, p.past + ONE_BOUNCE));
   if (TEXTURED) store_ray_cone(push.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
 }
 
-bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, uint pixel, vec2 cone) {
-  if (!worth_a_ray(max(largest(weight), coverage))) {
-    no_ray_refraction(slot);
-    return false;
-  }
-  vec3 o = offset_origin(s, -s.geometric, 0.0);
-  store_ray(push.refraction_rays, slot, Ray(o, direction, 0.0, INFINITY), pixel, RayLoad(weight, coverage, medium));
+// Through the surface; `carried.past` counts this too.
+void store_ray_through(uint slot, Surface s, vec3 direction, RayLoad carried, uint pixel, vec2 cone) {
+  vec3 o;
+  float tmin;
+  start_ray(s, -s.geometric, direction, s.rank, o, tmin);
+  store_ray(push.refraction_rays, slot, Ray(o, direction, tmin, INFINITY), pixel, carried);
   if (TEXTURED) store_ray_cone(push.refraction_rays, slot, cone);
-  return true;
+}
+
+bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, Parent p, vec2 cone) {
+  bool made = may_bounce(p) && worth_a_ray(max(largest(weight), coverage));
+  if (made)
+    store_ray_through(slot, s, direction, RayLoad(weight, coverage, medium, p.past + ONE_BOUNCE), p.pixel, cone);
+  else
+    no_ray_refraction(slot);
+  return made;
+}
+
+// Straight through a blended surface: no bounce, but there is a bound.
+void make_straight_ray(uint slot, Surface s, float alpha, float t, Parent p) {
+  vec3 weight = p.weight * (1.0 - alpha);
+  float coverage = p.coverage * (1.0 - alpha);
+  bool worth = worth_a_ray(max(largest(weight), coverage)), stopped = (p.past >> 16) >= MOST_BLENDED;
+  if (!worth || stopped) {
+    if (worth) atomicAdd(stats[KIND_REFRACTION * STAT_FIELDS + STAT_STOPPED], 1ul);
+    no_ray_refraction(slot);
+    return;
+  }
+  store_ray_through(slot, s, p.ray.direction, RayLoad(weight, coverage, p.medium, p.past + ONE_BLENDED), p.pixel,
+                    cone_after(p, s, t, 1.0, 0.0));
 }
 
 float ior_of(uint stack) { return (stack & 0xFFu) == 0u ? 1.0 : load_material(volume_material(stack & 0xFFu)).ior; }
@@ -190,7 +216,7 @@ float make_transmitted_ray(uint slot, Surface s, Material m, float t, vec3 weigh
     cone = cone_after(p, s, t, eta, eta * face.cosine + dot(way, face.normal));
   }
   float coverage = GLASS_ALPHA ? cover * min(mean_of(share), 1.0) : 0.0;
-  bool made = make_refraction_ray(slot, s, way, passes ? weight * share : vec3(-1), face.medium, passes ? coverage : -1.0, p.pixel,
+  bool made = make_refraction_ray(slot, s, way, passes ? weight * share : vec3(-1), face.medium, passes ? coverage : -1.0, p,
                                   cone);
   return made ? coverage : 0.0;
 }
@@ -222,8 +248,7 @@ float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight
   if (REFRACTIONS && TRANSLUCENT && s.transmission > 0.0)
     return make_transmitted_ray(slot, s, m, t, weight, p.coverage, p, lobes, face);
   if (REFRACTIONS && alpha < 1.0)
-    make_refraction_ray(slot, s, p.ray.direction, p.weight * (1.0 - alpha), p.medium, p.coverage * (1.0 - alpha), p.pixel,
-                        cone_after(p, s, t, 1.0, 0.0));
+    make_straight_ray(slot, s, alpha, t, p);
   else
     no_ray_refraction(slot);
   return 0.0;
@@ -233,8 +258,10 @@ float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight
 void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool there) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
+  if (RANKED) t = at.t;  // the other says where the hit counts
   Material m;
   Surface s = surface_at(triangle, at.barycentric, p.ray.direction, p.cone_width + p.cone_spread * t, m);
+  set_ranks(corners.instance, at.clockwise, s);
   float covers = 0.0;  // what is absorbed hides what is behind
   if (VOLUMES) {
     vec3 left = absorbed(p, s, m, t);

@@ -50,7 +50,7 @@ Instance unpack_instance(uvec2 p[INSTANCE_PAIRS]) {
   for (uint k = 0u; k < 5u; ++k) f[k] = floats(p[2u * k], p[2u * k + 1u]);
   return Instance(f[0].xyz, vec3(f[0].w, f[1].xy), vec3(f[1].zw, f[2].x), f[2].yzw, f[3].xyz, vec3(f[3].w, f[4].xy),
                   vec3(f[4].zw, floats(p[10]).x), floats(p[10]).y, p[11].x, p[11].y, p[12].x, p[12].y, p[13].x, p[13].y,
-                  p[14].x, p[14].y, p[15].x, p[15].y, p[16].x, NO_INDEX);
+                  p[14].x, p[14].y, p[15].x, p[15].y, p[16].x, p[16].y);
 }
 
 // Without its textures: see load_use.

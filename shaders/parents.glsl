@@ -12,6 +12,7 @@ struct Parent {
   float coverage;
   uint pixel;
   uint medium;
+  uint past;  // RAY_PAST
   float cone_width, cone_spread;
 };
 
@@ -24,6 +25,7 @@ Parent load_parent(uint i, out uvec2 hit) {
   p.weight = carried.weight;
   p.coverage = carried.coverage;
   p.medium = carried.medium;
+  p.past = carried.past;
   p.pixel = load_ray_pixel(push.rays, slot);
   vec2 cone = TEXTURED ? load_ray_cone(push.rays, slot) : vec2(0);
   p.cone_width = cone.x;
@@ -39,6 +41,7 @@ Parent camera_parent(uint i, out uvec2 hit) {
   p.weight = vec3(1);
   p.coverage = 1.0;
   p.medium = 0u;
+  p.past = 0u;
   p.pixel = at.y * frame.tile_width + at.x;
   p.cone_width = frame.cone_width;
   p.cone_spread = frame.cone_spread;

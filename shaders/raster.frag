@@ -15,12 +15,15 @@ layout(location = 0) flat in uint triangle;
 layout(location = 1) flat in vec3 corner_a;
 layout(location = 2) flat in vec3 corner_b;
 layout(location = 3) flat in vec3 corner_c;
+layout(location = 4) flat in uint word;
 
 void main() {
   uvec2 at = to_uint(gl_FragCoord.xy - 0.5);  // of pixel centres
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, frame.place);
   TriangleHit h = project_to_triangle(make_shear(ray.origin, ray.direction), corner_a, corner_b, corner_c, 0.0);
-  if (!(h.t >= ray.tmin && h.t <= ray.tmax)) return;
+  if (!(h.t >= ray.tmin && h.t <= ray.tmax) || is_hidden(word, h.clockwise)) return;
+  if (RANKED) h.t += rank_shift(make_shear(ray.origin, ray.direction), Corners(corner_a, corner_b, corner_c, word), h);
+  if (!(h.t <= ray.tmax)) return;
   uint64_t found = (uint64_t(floatBitsToUint(h.t)) << 32) | uint64_t(triangle);
   uint pixel = at.y * frame.tile_width + at.x;
   if (found >= visibility[pixel]) return;  // only ever falls: a stale value costs an atomic, nothing else

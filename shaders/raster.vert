@@ -9,6 +9,7 @@ layout(location = 0) flat out uint triangle;
 layout(location = 1) flat out vec3 corner_a;
 layout(location = 2) flat out vec3 corner_b;
 layout(location = 3) flat out vec3 corner_c;
+layout(location = 4) flat out uint word;
 
 void main() {
   triangle = gl_VertexIndex / 3u;
@@ -17,6 +18,7 @@ void main() {
   corner_a = c.a;
   corner_b = c.b;
   corner_c = c.c;
+  word = c.instance;
   vec3 p = corner == 0u ? c.a : corner == 1u ? c.b : c.c;
   vec3 v = p - frame.eye;
   float x = dot(v, frame.right) / dot(frame.right, frame.right);

@@ -172,7 +172,7 @@ void test_sample(vec2 place, Outline o, Corners corners, uint triangle) {
   if (o.nearest > seen || below * below < 1.0 + dot(aside, aside)) return;
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, frame.place);
   // No further than what is seen; before there is anything, that is a NaN.
-  TriangleHit h = intersect_corners(make_shear(ray.origin, ray.direction), corners, ray.tmin, seen < ray.tmax ? seen : ray.tmax);
+  TriangleHit h = seen_corners(make_shear(ray.origin, ray.direction), corners, ray.tmin, seen < ray.tmax ? seen : ray.tmax);
   if (!h.hit) return;
   uint64_t found = (uint64_t(floatBitsToUint(h.t) & 0x7FFFFFFFu) << 32) | uint64_t(triangle);
   if (MASKED && (corners.instance & TRIANGLE_MASKED) != 0u && masked_out(triangle, h.barycentric)) return;

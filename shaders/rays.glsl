@@ -34,6 +34,7 @@ struct RayLoad {  // what the ray is for
   vec3 weight;
   float coverage;
   uint medium;
+  uint past;  // RAY_PAST
 };
 
 // Offsets fit 32 bits: a buffer is at most 4 GiB (checked where it is made).
@@ -60,7 +61,8 @@ uint load_ray_medium(uvec2 list, uint slot) { return floatBitsToUint(load_ray_pa
 
 RayLoad load_ray_load(uvec2 list, uint slot) {
   vec2 a = load_ray_pair(list, slot, RAY_WEIGHT), b = load_ray_pair(list, slot, RAY_WEIGHT + 2u);
-  return RayLoad(vec3(a, b.x), b.y, load_ray_medium(list, slot));
+  uvec2 c = floatBitsToUint(load_ray_pair(list, slot, RAY_MEDIUM));
+  return RayLoad(vec3(a, b.x), b.y, c.x, c.y);
 }
 
 void store_ray(uvec2 list, uint slot, Ray ray, uint pixel, RayLoad carried) {
@@ -70,7 +72,7 @@ void store_ray(uvec2 list, uint slot, Ray ray, uint pixel, RayLoad carried) {
   store_ray_pair(list, slot, RAY_TMIN, ray.tmin, ray.tmax);
   store_ray_pair(list, slot, RAY_WEIGHT, carried.weight.x, carried.weight.y);
   store_ray_pair(list, slot, RAY_WEIGHT + 2u, carried.weight.z, carried.coverage);
-  store_ray_pair(list, slot, RAY_MEDIUM, uintBitsToFloat(carried.medium), 0.0);
+  store_ray_pair(list, slot, RAY_MEDIUM, uintBitsToFloat(carried.medium), uintBitsToFloat(carried.past));
   ray_pixel(list, slot).v = pixel;
 }
 

@@ -37,7 +37,8 @@ SHEAF_CONST RAY_TMIN = 6u;
 SHEAF_CONST RAY_TMAX = 7u;
 SHEAF_CONST RAY_WEIGHT = 8u;     // 3 words; a shadow ray: the light it carries if nothing is in the way
 SHEAF_CONST RAY_COVERAGE = 11u;
-SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light. 13: unused
+SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light
+SHEAF_CONST RAY_PAST = 13u;      // bounces, and from bit 16 on the blended surfaces it went straight through
 SHEAF_CONST RAY_CONE = 14u;      // width and spread of the ray's cone, where textures are filtered (SHADING.md, Texture filter)
 SHEAF_CONST RAY_WORDS = 16u;
 SHEAF_CONST RAY_PART = 8u;
@@ -65,6 +66,9 @@ SHEAF_CONST COUNT_WALK_RAY = 30u;     // rays at work: the first …
 SHEAF_CONST COUNT_WALK_RAYS = 31u;    // … and how many
 SHEAF_CONST COUNT_WORDS = 32u;
 
+// Blended surfaces that a ray may go through on its way from the camera; what is further is not seen.
+SHEAF_CONST MOST_BLENDED = 64u;
+
 // What a dispatch's rays are to the sums of their pixels: several may be for one pixel, no two are, or every pixel has one and the sums do
 // not matter yet.
 SHEAF_CONST SUMS_SHARED = 0u, SUMS_OWN = 1u, SUMS_UNSET = 2u;
@@ -76,7 +80,8 @@ SHEAF_CONST STAT_NODE_OBJECT = 2u;
 SHEAF_CONST STAT_RAY_BOX = 3u;
 SHEAF_CONST STAT_RAY_TRIANGLE = 4u;
 SHEAF_CONST STAT_LEVELS = 5u;         // node-object tests of the levels 0 (rays) … 15
-SHEAF_CONST STAT_FIELDS = 21u;
+SHEAF_CONST STAT_STOPPED = 21u;       // rays that MOST_BLENDED stopped (of refraction rays; counted in any case)
+SHEAF_CONST STAT_FIELDS = 22u;
 SHEAF_CONST STAT_SUMS = 4u * STAT_FIELDS;
 
 // Indirect dispatch arguments: three words each.
@@ -167,11 +172,19 @@ SHEAF_CONST MATERIAL_BLEND = 2u;
 SHEAF_CONST MATERIAL_UNLIT = 4u;
 SHEAF_CONST MATERIAL_VOLUME = 8u;
 SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
-// A triangle's last word: the instance, and whether a hit needs a second look: bit 31 alpha mask, bit 30 lets light pass.
+SHEAF_CONST MATERIAL_ONE_SIDED = 32u;  // its back is passed through by all but shadow rays
+// A triangle's last word: the instance (there are fewer than MAX_NODES, since each has a node), and what a hit must know at once: whether
+// it needs a second look (alpha mask, lets light pass), whether the back counts, whether the node or skin mirrors, and its rank among what lies in
+// the same place (ranks.glsl): three bits, and whether it turns with the side.
 SHEAF_CONST TRIANGLE_MASKED = 0x80000000u;
 SHEAF_CONST TRIANGLE_TRANSLUCENT = 0x40000000u;
-SHEAF_CONST TRIANGLE_MIRRORED = 0x20000000u;  // its skin mirrors it: its front is the other side
-SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x1FFFFFFFu;
+SHEAF_CONST TRIANGLE_ONE_SIDED = 0x20000000u;
+SHEAF_CONST TRIANGLE_MIRRORED = 0x10000000u;
+SHEAF_CONST TRIANGLE_TURNS = 0x08000000u;
+SHEAF_CONST TRIANGLE_RANK = 24u;  // its lowest bit
+SHEAF_CONST TRIANGLE_INSTANCE_MASK = 0x00FFFFFFu;
+// Of Instance::marks: the instance's place among the Deforms where a joint of its skin mirrors, else all ones.
+SHEAF_CONST INSTANCE_DEFORM = 0x00FFFFFFu;
 // A triangle of a material with any of these may let light through: shadow rays look closer.
 SHEAF_CONST MATERIAL_NOT_OPAQUE = MATERIAL_MASK | MATERIAL_BLEND | MATERIAL_TRANSMISSIVE;
 
@@ -247,7 +260,7 @@ struct Instance {
   uint dynamic;     // first vertex in the dynamic buffer, NO_INDEX where the instance is rigid
   uint material;
   uint object;      // node + 1
-  uint mirrors;     // its place among the Deforms where a joint of its skin mirrors, else NO_INDEX; read by animate_triangles only
+  uint marks;       // INSTANCE_DEFORM, and TRIANGLE_RANK and TRIANGLE_TURNS as in its triangles' words; read by animate_triangles only
 };                  // (structures read by address are whole pairs of words, see memory.glsl)
 
 struct Light {
@@ -288,6 +301,8 @@ struct Frame {      // per frame and batch of samples
   uint tile_y;
   uint tile_width;
   uint tile_height;
+  float rank_extent;  // of the surfaces that have ranks, see ranks.glsl
+  uint depth;         // most bounces of a ray
   uvec2 triangles_at;  // device addresses, low word first: see memory.glsl
   uvec2 nodes_at;
   uvec2 indices_at;

@@ -15,6 +15,8 @@ struct Surface {
   vec3 vertex_normal; // the same without a normal map
   float lift;         // along it, onto a level with the triangle's highest corner; 0 where the triangle is flat
   bool front;
+  uint rank;          // among what lies in the same place (ranks.glsl), as the ray met it; 0: alone
+  uint rank_behind;   // as a ray meets it that comes back
   vec4 base;
   float metallic;
   float roughness;
@@ -133,6 +135,14 @@ float lift_of(Surface s, vec3 v0, vec3 v1, vec3 v2) {
   return lift > 1e-5 * s.reach && dot(s.vertex_normal, s.geometric) > 0.0 ? lift : 0.0;
 }
 
+void set_ranks(uint word, bool clockwise, inout Surface s) {
+  s.rank = s.rank_behind = 0u;
+  if (!RANKED) return;
+  s.rank = rank_of(word, clockwise);
+  // What does not turn was met in this order and no other: nothing of the place is seen from there once more.
+  s.rank_behind = s.rank == 0u ? 0u : (word & TRIANGLE_TURNS) != 0u ? LAST_RANK + 1u - s.rank : LAST_RANK;
+}
+
 // All lanes are active (looks_together.glsl).
 Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Material material) {
   Corners corners = load_triangle(triangle);
@@ -148,7 +158,7 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   const float gamma7 = 4.172329e-7;
   s.point_error = gamma7 * (abs(v0 * b.x) + abs(v1 * b.y) + abs(v2 * b.z));
   s.reach = max_of(max(max(abs(v0 - point), abs(v1 - point)), abs(v2 - point)));
-  float side = front_sign(instance, corners);
+  float side = front_sign(corners);
   vec3 g = triangle_normal(v0, v1, v2, -direction) * side;
   TexturePoint point_uv;
   s.curvature = 0.0;
@@ -188,13 +198,29 @@ float next_down(float v) { return -next_up(-v); }
 // along the normal and rounded away (pbrt-v3 3.9.5). The next test adds its own error: it works on corner − origin, up to
 // `span` (the larger of the triangle's reach and the ray's length) a coordinate, each rounded once when subtracted, twice
 // when sheared and twice when weighted, so a plane through the point may seem shifted by 5·2^-24·span an axis; 8 leaves room.
+//
+// Where other surfaces lie in the same place, theirs is the larger error: a step of ranks.
 vec3 offset_origin(Surface s, vec3 towards, float length_of_ray) {
   float span = max(s.reach, length_of_ray);
   float distance = dot(abs(s.geometric), 2.0 * s.point_error + 4.7683716e-7 * span);
+  if (RANKED && s.rank != 0u) distance = max(distance, step_across(sum_of(s.point)));
   vec3 offset = s.geometric * (dot(s.geometric, towards) < 0.0 ? -distance : distance);
   precise vec3 o = s.point + offset;
   o.x = offset.x > 0.0 ? next_up(o.x) : offset.x < 0.0 ? next_down(o.x) : o.x;
   o.y = offset.y > 0.0 ? next_up(o.y) : offset.y < 0.0 ? next_down(o.y) : o.y;
   o.z = offset.z > 0.0 ? next_up(o.z) : offset.z < 0.0 ? next_down(o.z) : o.z;
   return o;
+}
+
+// Where a ray goes on from a surface. If others lie in the same place it starts in that place itself, half a step behind the surface of
+// that rank (seen_corners): it meets those that come after, and none of those before.
+void start_ray(Surface s, vec3 towards, vec3 direction, uint rank, out vec3 origin, out float tmin) {
+  tmin = 0.0;
+  if (!RANKED || s.rank == 0u) {
+    origin = offset_origin(s, towards, 0.0);
+    return;
+  }
+  origin = s.point;
+  float steep = min(1.0 / abs(dot(s.geometric, direction)), STEEPEST);
+  tmin = -(float(rank) + 0.5) * step_across(sum_of(s.point)) * steep;
 }

@@ -127,13 +127,20 @@ struct TriangleHit {
   bool hit;
   float t;
   vec3 barycentric;  // weights of v0, v1, v2
+  bool clockwise;    // the corners, seen along the ray: the back, unless the node mirrors
+  float area;        // twice the triangle's, sheared; with any sign
 };
+
+// (v1 − v0)×(v2 − v0)·direction = −Σe/sz: the shear's determinant is sz, and Σe is minus twice the area of the sheared triangle.
+bool is_clockwise(Shear s, float sum) { return (sum < 0.0) != (s.sz < 0.0); }
 
 TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, float tmin, float tmax) {
   TriangleHit result;
   result.hit = false;
   result.t = 0.0;
   result.barycentric = vec3(0);
+  result.clockwise = false;
+  result.area = 0.0;
   Edges edges = edge_functions(s, v0, v1, v2);
   vec3 e = edges.e, z = edges.z;
   if ((e.x < 0.0 || e.y < 0.0 || e.z < 0.0) && (e.x > 0.0 || e.y > 0.0 || e.z > 0.0)) return result;
@@ -148,6 +155,8 @@ TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, fl
   t = t > range.y ? range.y : t;
   result.hit = range.x <= range.y && t >= tmin && t <= tmax;  // false for a NaN
   result.t = t;
+  result.clockwise = is_clockwise(s, det);
+  result.area = det;
   precise vec3 weights = e / det;
   result.barycentric = weights;
   return result;
@@ -159,6 +168,8 @@ TriangleHit project_to_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float tmin) 
   Edges edges = edge_functions(s, v0, v1, v2);
   vec3 e = exact_where_ill_conditioned(edges), z = edges.z;
   float sum = e.x + e.y + e.z;
+  result.clockwise = is_clockwise(s, sum);
+  result.area = sum;
   e = sum < 0.0 ? max(-e, vec3(0)) : max(e, vec3(0));
   precise float det = e.x + e.y + e.z;
   if (!(det > 0.0)) {

@@ -79,6 +79,7 @@ class Job {
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<DumpWriter> dump_;
   RunStats stats_;
+  std::uint64_t stopped_ = 0;  // rays, of all frames
   Clock::time_point saved_ = Clock::now();
   std::optional<std::pair<RenderedFrame, FrameRequest>> rendered_;  // not yet at being written
   std::future<void> writing_;  // the frame before: compressed and written while the next one renders
@@ -175,6 +176,7 @@ void Job::write(RenderedFrame frame, const FrameRequest& request) {
   }
   write_exr(path, frame.layers, attributes, options_.compression);
   frame.stats.stages_ms.emplace_back("write", milliseconds_since(begun));
+  stopped_ += frame.stats.repeated ? 0 : frame.stats.stopped;
   progress_.frame_done(number, path, frame.stats.wall_ms);
   stats_.frames.push_back(std::move(frame.stats));
 }
@@ -269,6 +271,9 @@ int Job::run() {
   }
   finish_writing();
   save_stats(true);
+  if (stopped_ > 0)
+    progress_.warning(options_.scene + ": " + std::to_string(stopped_) +
+                      " rays went through 64 blended surfaces and were stopped there: what lies behind is not seen");
   if (interrupted() != 0) {
     progress_.error(128 + interrupted(), "interrupted; whole frames are kept, --resume goes on from here");
     return 128 + interrupted();

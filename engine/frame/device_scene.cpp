@@ -13,7 +13,10 @@ constexpr std::uint32_t max_lights = 4096;
 }  // namespace
 
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, const Plan& plan)
-    : scene_(scene), hierarchy_(plan.object_hierarchy), posed_(plan.posed), layout_(lay_out(scene, settings)) {
+    : scene_(scene),
+      hierarchy_(plan.object_hierarchy),
+      posed_(plan.posed),
+      layout_(lay_out(scene, settings, plan.coincidence ? *plan.coincidence : Coincidence{})) {
   Recorder recorder(device);
   indices_ = upload(device, recorder, "indices", layout_.indices, by_address);
   positions_ = upload(device, recorder, "positions", layout_.positions, by_address);

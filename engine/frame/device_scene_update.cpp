@@ -71,8 +71,9 @@ void DeviceScene::place_instances(const Pose& pose, std::vector<bool>& moved) {
       instance.normal2 = glm::vec3(c[0].z, c[1].z, c[2].z);
       boxes_[i] = transformed(layout_.mesh_boxes[source.mesh], m);
       to_world_[i] = m;
-    } else if (instance.mirrors != none && !mirrors(scene_.skins[scene_.nodes[source.node].skin], pose)) {
-      instance.mirrors = none;
+    } else if ((instance.marks & gpu::INSTANCE_DEFORM) != gpu::INSTANCE_DEFORM &&
+               !mirrors(scene_.skins[scene_.nodes[source.node].skin], pose)) {
+      instance.marks |= gpu::INSTANCE_DEFORM;
     }
     if (store(placed[i], instance)) moved[i] = true;
   }

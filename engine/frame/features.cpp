@@ -52,6 +52,7 @@ void add_material(const Scene& scene, std::uint32_t index, const RenderSettings&
   features.blended |= material.alpha_mode == AlphaMode::blend && !settings.opaque;
   features.masked |= material.alpha_mode == AlphaMode::mask && !settings.opaque;
   features.reflective |= lit && (roughness.least < 0.4F || transmissive);
+  features.one_sided |= hides_back(settings, material);
   features.emissive |= material.emissive != glm::vec3(0);
   features.normal_mapped |= material.normal_texture.present();
   for (const auto* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
@@ -78,12 +79,19 @@ std::vector<std::string> Features::names() const {
   add(normal_mapped, "normal maps");
   add(unlit, "unlit");
   add(emissive, "emissive");
+  add(one_sided, "single-sided");
+  add(coincident, "coincident surfaces");
   add(skinned, "skins");
   add(morphed, "morphs");
   add(moving_nodes, "moving nodes");
   add(moving_camera, "moving camera");
   add(moving_lights, "moving lights");
   return result;
+}
+
+bool hides_back(const RenderSettings& settings, const Material& material) {
+  return settings.back_faces == BackFaces::hide && !settings.opaque && !material.double_sided &&
+         !(material.transmission > 0);
 }
 
 Features find_features(const Scene& scene, const std::vector<std::uint32_t>& animations, const RenderSettings& settings,
@@ -118,6 +126,9 @@ Features find_features(const Scene& scene, const std::vector<std::uint32_t>& ani
     features.moving_lights = camera_moves;
   }
   for (const auto material : used) add_material(scene, material, settings, features);
+  const SurfaceView view{settings.opaque, settings.back_faces == BackFaces::show};
+  features.coincidence = std::make_shared<const Coincidence>(find_coincident(scene, view));
+  features.coincident = features.coincidence->any();
   return features;
 }
 
@@ -132,16 +143,26 @@ bool poses_triangles(const Features& features, const RenderSettings& settings) {
          features.triangles >= 2 * features.distinct_triangles;
 }
 
+const char* why_backs_show(const RenderSettings& settings) {
+  if (settings.opaque) return "--opaque: every surface is two-sided";
+  return settings.back_faces == BackFaces::show ? "--back-faces show"
+                                                : "every material is double-sided or transmissive";
+}
+
 }  // namespace
 
 Plan make_plan(const Features& features, const RenderSettings& settings, Strategy strategy) {
   Plan plan;
   auto leave = [&](const char* stage, const std::string& reason) { plan.left_out.push_back({stage, reason}); };
+  plan.coincidence = features.coincidence;
   plan.shadows = true;
   plan.reflections = features.reflective && settings.depth > 0;
   if (!plan.reflections) leave("reflection", settings.depth == 0 ? "--depth 0" : "no reflective material");
-  plan.refractions = features.translucent() && settings.depth > 0;
-  if (!plan.refractions) leave("refraction", settings.depth == 0 ? "--depth 0" : "no transmissive or blended material");
+  plan.refractions = features.blended || (features.transmissive && settings.depth > 0);
+  if (!plan.refractions)
+    leave("refraction", features.transmissive ? "--depth 0" : "no transmissive or blended material");
+  if (plan.reflections || plan.refractions)
+    plan.generations = settings.depth + (features.blended ? gpu::MOST_BLENDED : 0);
   if (!features.rough_glass.empty())
     leave("rough transmission", "drawn clear, only reflection is rough: " + listed(features.rough_glass));
   if (!features.volumes) leave("media", "no volume that refracts and absorbs");
@@ -164,6 +185,8 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
   plan.textured_normals = features.normal_mapped;
   if (!features.normal_mapped) leave("normal maps", "no material has one");
   if (!features.masked) leave("alpha test", "no alpha-masked material");
+  if (!features.coincident) leave("ranks", "no surfaces lie in one place");
+  if (!features.one_sided) leave("back faces", why_backs_show(settings));
   const bool traced = strategy != Strategy::brute && strategy != Strategy::rayquery && strategy != Strategy::reference;
   plan.classes = strategy == Strategy::classify;
   plan.packets = strategy == Strategy::frustum || plan.classes;

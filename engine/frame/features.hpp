@@ -5,14 +5,19 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "output/stats.hpp"
+#include "scene/coincident.hpp"
 #include "scene/scene.hpp"
 #include "settings/render_settings.hpp"
 
 namespace sheaf {
+
+/// Whether rays other than shadow rays pass through the material's back (glTF 3.9.5).
+[[nodiscard]] bool hides_back(const RenderSettings& settings, const Material& material);
 
 struct Features {
   std::uint32_t lights = 0;
@@ -22,7 +27,10 @@ struct Features {
   bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
   bool textured = false, normal_mapped = false, unlit = false, emissive = false;
   std::vector<std::string> rough_glass;  // materials whose transmission ought to blur what is behind
+  bool coincident = false;  // some surfaces lie in one place
+  bool one_sided = false;   // some surface's back is passed through
   bool skinned = false, morphed = false, moving_nodes = false, moving_camera = false, moving_lights = false;
+  std::shared_ptr<const Coincidence> coincidence;
   [[nodiscard]] bool translucent() const { return transmissive || blended; }
   [[nodiscard]] bool geometry_moves() const { return moving_nodes || skinned || morphed; }
   [[nodiscard]] std::vector<std::string> names() const;
@@ -34,12 +42,14 @@ struct Features {
 
 struct Plan {
   bool shadows = false, reflections = false, refractions = false;
-  bool adaptive = false;  // samples are spent pixel by pixel
+  bool adaptive = false;          // samples are spent pixel by pixel
+  std::uint32_t generations = 0;  // of rays after the camera's, at most
   bool raster = true, deform = false, textured_normals = false;
   bool sorts = false, ray_hierarchy = false, object_hierarchy = false, bundles = false, packets = false,
        spheres = false;
   bool classes = false;  // rays are sorted by class, also camera rays
   bool posed = false;    // triangles are posed from their instances when read, and not kept in world space
+  std::shared_ptr<const Coincidence> coincidence;  // the scene's
   std::vector<LeftOut> left_out;
 };
 

@@ -15,7 +15,7 @@ constexpr std::size_t piece = std::size_t{1} << 20U;
 }  // namespace
 
 ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemory& memory)
-    : scene_(scene), memory_(memory) {
+    : scene_(scene), memory_(memory), ranked_(scene.layout().rank_extent > 0) {
   using Kind = Buffer::Kind;
   triangles_ = Buffer(device, "dump", std::min<std::uint64_t>(scene.triangles(), piece) * 9 * sizeof(float),
                       Kind::readback, by_address);
@@ -57,7 +57,8 @@ HitRecord ListDump::record_of(const float* ray, std::uint32_t triangle, float t)
   const glm::dvec3 e1 = corner(1) - corner(0), e2 = corner(2) - corner(0), s = o - corner(0);
   const glm::dvec3 p = glm::cross(d, e2), q = glm::cross(s, e1);
   const double det = glm::dot(e1, p);
-  record.t = t;
+  record.t =
+      ranked_ && det != 0 ? static_cast<float>(glm::dot(e2, q) / det) : t;  // with ranks, t is where the hit counts
   record.triangle = static_cast<std::int32_t>(triangle);
   if (det != 0) {
     record.u = static_cast<float>(glm::dot(s, p) / det);

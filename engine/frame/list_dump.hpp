@@ -25,6 +25,7 @@ class ListDump {
 
   const DeviceScene& scene_;
   const RayMemory& memory_;
+  bool ranked_;  // surfaces lie in one place
   Kernel corners_;
   Buffer triangles_, rays_, hits_, order_, counters_;
   std::vector<float> host_corners_;  // 9 a triangle

@@ -79,6 +79,7 @@ std::uint32_t flags_of(const Material& material, const RenderSettings& settings)
   if (material.alpha_mode == AlphaMode::mask) flags |= gpu::MATERIAL_MASK;
   if (material.alpha_mode == AlphaMode::blend) flags |= gpu::MATERIAL_BLEND;
   if (material.transmission > 0 && !material.unlit) flags |= gpu::MATERIAL_TRANSMISSIVE;
+  if (hides_back(settings, material)) flags |= gpu::MATERIAL_ONE_SIDED;
   if (is_volume(material, settings)) flags |= gpu::MATERIAL_VOLUME;
   return flags;
 }

@@ -11,7 +11,11 @@ namespace {
 
 class ReferenceFrames final : public FrameSource {
  public:
-  ReferenceFrames(const Scene& scene, const RenderSettings& settings) : scene_(scene), settings_(settings) {}
+  ReferenceFrames(const Scene& scene, const RenderSettings& settings)
+      : scene_(scene),
+        settings_(settings),
+        coincidence_(std::make_shared<const Coincidence>(
+            find_coincident(scene, {settings.opaque, settings.back_faces == BackFaces::show}))) {}
 
   RenderedFrame render(const FrameRequest& request) override {
     if (request.meanwhile) request.meanwhile();
@@ -26,6 +30,8 @@ class ReferenceFrames final : public FrameSource {
     s.cutoff = settings_.cutoff;
     s.opaque = settings_.opaque;
     s.transparent_glass = settings_.glass_alpha == GlassAlpha::transparent;
+    s.show_backs = settings_.back_faces == BackFaces::show;
+    s.coincidence = coincidence_;
     s.stop = request.stop;
     if (settings_.environment) s.environment = glm::dvec3(*settings_.environment);
     const ReferenceFrame frame = render_reference(scene_, request.pose, request.camera, s);
@@ -59,6 +65,7 @@ class ReferenceFrames final : public FrameSource {
     FrameStats& stats = out.stats;
     stats.counted = true;
     stats.strategies = {name_of(Strategy::reference)};
+    stats.stopped = frame.counts.stopped;
     std::uint64_t rays = 0;
     for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
       stats.rays[kind] = frame.counts.rays[kind];
@@ -73,6 +80,7 @@ class ReferenceFrames final : public FrameSource {
 
   const Scene& scene_;
   RenderSettings settings_;
+  std::shared_ptr<const Coincidence> coincidence_;
 };
 
 }  // namespace

@@ -82,6 +82,8 @@ void Renderer::set_frame(const CameraView& camera, const Batch& batch, const Til
   f.instances = static_cast<std::uint32_t>(scene_->layout().instances.size());
   f.sample_index = batch.first;
   f.box_pad = scene_->box_pad();
+  f.rank_extent = static_cast<float>(scene_->layout().rank_extent);
+  f.depth = settings_.depth;
   f.tile_x = tile.x;
   f.tile_y = tile.y;
   f.tile_width = tile.width;
@@ -225,19 +227,19 @@ bool Renderer::render_batch(const FrameRequest& request, const Batch& batch, con
   const std::uint32_t sums = direct() && batch.first == 0 ? gpu::SUMS_UNSET
                              : one_ray_a_pixel(0)         ? gpu::SUMS_OWN
                                                           : gpu::SUMS_SHARED;
-  generate_.secondary(recorder_, memory_, {0, true, settings_.depth == 0, direct(), sums});
+  generate_.secondary(recorder_, memory_, {0, true, direct(), sums});
   trace_shadows(0);
   const auto counters = memory_.counters_readback.view<std::uint32_t>();
-  for (std::uint32_t g = 1; g <= settings_.depth; ++g) {
-    if (!plan_.reflections && !plan_.refractions) break;
+  for (std::uint32_t g = 1; g <= plan_.generations; ++g) {
     const std::uint32_t from = (g - 1) % 2;
     if (plan_.reflections) trace(memory_.reflection[from], gpu::KIND_REFLECTION, g);
     if (plan_.refractions) trace(memory_.refraction[from], gpu::KIND_REFRACTION, g);
     // Of either kind, a list each, a ray makes one.
     const std::uint32_t parents = one_ray_a_pixel(g - 1) ? gpu::SUMS_OWN : gpu::SUMS_SHARED;
-    generate_.secondary(recorder_, memory_, {from, false, g == settings_.depth, false, parents});
+    generate_.secondary(recorder_, memory_, {from, false, false, parents});
     trace_shadows(g);
-    if (g % generations_a_submit != 0 || g == settings_.depth) continue;
+    // Past --depth there are but rays that went through blended surfaces: seldom any.
+    if ((g % generations_a_submit != 0 && g != settings_.depth) || g == plan_.generations) continue;
     recorder_.copy(memory_.counters, memory_.counters_readback, gpu::COUNT_WORDS * 4);
     recorder_.submit_and_wait();
     if (counters[gpu::COUNT_PARENTS] == 0) break;

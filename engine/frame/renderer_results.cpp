@@ -87,6 +87,7 @@ void Renderer::collect_stats(RenderedFrame& out) {
     const auto* of = &stats[kind * gpu::STAT_FIELDS];
     out.stats.rays[kind] += of[gpu::STAT_RAYS];
     out.stats.hits[kind] += of[gpu::STAT_HITS];
+    out.stats.stopped += of[gpu::STAT_STOPPED];
     out.stats.node_object[kind] += of[gpu::STAT_NODE_OBJECT];
     out.stats.ray_box[kind] += of[gpu::STAT_RAY_BOX];
     out.stats.ray_triangle[kind] += of[gpu::STAT_RAY_TRIANGLE];

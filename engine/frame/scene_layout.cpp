@@ -161,7 +161,7 @@ void place_deforming(SceneLayout& layout, const Scene& scene, const InstanceSour
   d.face_tangents = place.face_tangents;
   place_morphed_attributes(layout, mesh, place, instance, d);
   if (skinned && may_mirror(scene, scene.skins[node.skin])) {
-    instance.mirrors = static_cast<std::uint32_t>(layout.deforms.size());
+    instance.marks = (instance.marks & ~gpu::INSTANCE_DEFORM) | static_cast<std::uint32_t>(layout.deforms.size());
     layout.mirrored_skins = true;
   }
   layout.dynamic_vertices += d.vertex_count;
@@ -200,7 +200,7 @@ Box mesh_box(const Mesh& mesh) {
   return box;
 }
 
-std::vector<InstanceSource> list_instances(const Scene& scene) {
+std::vector<InstanceSource> list_instances(const Scene& scene, const Coincidence& coincidence) {
   std::vector<InstanceSource> sources;
   for (const auto index : scene.order) {
     const Node& node = scene.nodes[index];
@@ -212,6 +212,7 @@ std::vector<InstanceSource> list_instances(const Scene& scene) {
         InstanceSource source;
         source.node = index;
         source.mesh = m;
+        source.rank = coincidence.of(scene, index, m, c);
         source.deforms = (node.skin != none && !mesh.joints.empty()) || !mesh.targets.empty();
         glm::dmat4 centre(1);
         centre[3] = glm::dvec4(mesh.centre, 1);
@@ -246,9 +247,12 @@ std::vector<std::vector<std::uint32_t>> place_parts(const Scene& scene, const st
 
 }  // namespace
 
-SceneLayout lay_out(const Scene& scene, const RenderSettings& settings) {
+SceneLayout lay_out(const Scene& scene, const RenderSettings& settings, const Coincidence& coincidence) {
   SceneLayout layout;
-  layout.sources = list_instances(scene);
+  layout.sources = list_instances(scene, coincidence);
+  layout.rank_extent = coincidence.extent;
+  if (layout.sources.size() > gpu::TRIANGLE_INSTANCE_MASK)
+    throw limit_error(scene.path, "more than 2^24 meshes with all instances");
   const auto material_of = lay_out_materials(scene, settings, layout);
   std::vector<MeshPlace> places(scene.meshes.size());
   for (const auto& mesh : scene.meshes) layout.mesh_boxes.push_back(mesh_box(mesh));
@@ -261,9 +265,11 @@ SceneLayout lay_out(const Scene& scene, const RenderSettings& settings) {
     MeshPlace& place = places[source.mesh];
     gpu::Instance instance = place.place;
     instance.first_triangle = static_cast<std::uint32_t>(layout.triangles);
-    instance.dynamic = instance.mirrors = none;
+    instance.dynamic = none;
     instance.material = material_of[mesh.material];
     instance.object = source.node + 1;
+    instance.marks = gpu::INSTANCE_DEFORM | source.rank.rank << gpu::TRIANGLE_RANK |
+                     (source.rank.turns ? gpu::TRIANGLE_TURNS : 0);
     layout.triangles += instance.triangle_count;
     if (layout.triangles > max_primitives)
       throw limit_error(scene.path, "more than " + std::to_string(max_primitives) + " triangles with all instances");

@@ -19,6 +19,7 @@ namespace sheaf {
 struct InstanceSource {
   std::uint32_t node = 0, mesh = 0;
   glm::dmat4 within_node{1};  // EXT_mesh_gpu_instancing, and the mesh's centre
+  SurfaceRank rank;           // among what lies in the same place
   bool deforms = false;       // skinned or morphed: its vertices are made on the device
 };
 
@@ -39,6 +40,7 @@ struct SceneLayout {
   bool face_tangents = false;                // some deforming mesh has them
   bool morphed_attributes = false;           // some have texture coordinates or colors that are morphed
   bool mirrored_skins = false;               // some skin may have a joint that mirrors
+  double rank_extent = 0;                    // Coincidence::extent
   std::vector<std::uint32_t> node_children;  // WIDE words a node; the first `top_nodes` are the top level's
   std::vector<std::vector<std::uint32_t>> refit_by_height;  // of the instances' nodes that a part holds
   std::vector<std::uint32_t> node_instance;                 // a node (past the top level): its instance
@@ -48,6 +50,6 @@ struct SceneLayout {
 };
 
 /// Throws Error{limit} where the scene does not fit the device's buffers.
-[[nodiscard]] SceneLayout lay_out(const Scene& scene, const RenderSettings& settings);
+[[nodiscard]] SceneLayout lay_out(const Scene& scene, const RenderSettings& settings, const Coincidence& coincidence);
 
 }  // namespace sheaf

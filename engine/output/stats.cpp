@@ -78,7 +78,7 @@ Json frame_json(const FrameStats& frame) {
           {"repeated", frame.repeated},     {"stages", std::move(stages)},
           {"rays", all_kinds(frame.rays)},  {"hits", all_kinds(frame.hits)},
           {"tests", tests_of(frame)},       {"generations", std::move(generations)},
-          {"strategies", frame.strategies}};
+          {"strategies", frame.strategies}, {"blended_stopped", frame.stopped}};
 }
 
 // Sums for the totals. Rays and brute force appear twice: of all frames, and of those whose tests were counted, since

@@ -45,6 +45,7 @@ struct FrameStats {
   PerKind<std::uint64_t> node_object{}, ray_box{}, ray_triangle{};  // meaningful only where counted
   PerKind<std::vector<std::uint64_t>> node_object_by_level;
   std::uint64_t brute_force = 0;  // rays × triangles
+  std::uint64_t stopped = 0;      // rays that went through as many blended surfaces as a ray may
   bool counted = false;           // tests were counted in this frame
   bool repeated = false;          // pixels are those of an earlier identical frame; nothing was traced
   std::vector<GenerationStats> generations;

@@ -22,9 +22,9 @@ class Renderer {
            std::uint32_t threads)
       : view_(view),
         settings_(settings),
-        world_(build_world(scene, pose, glm::dvec3(view.to_world[3]))),
+        world_(build_world(scene, pose, glm::dvec3(view.to_world[3]), *settings.coincidence)),
         tracer_(world_.triangles, threads),
-        surfaces_(scene, world_, settings.opaque),
+        surfaces_(scene, world_, settings.opaque, settings.show_backs),
         places_(pixel_samples(settings.filter, settings.spp)),
         whitted_(tracer_, surfaces_, world_lights(scene, pose, view, world_.origin),
                  settings.environment.value_or(glm::dvec3(has_lights(scene) ? 0.0 : 0.4)), settings) {
@@ -72,6 +72,7 @@ class Renderer {
       for (std::uint32_t x = 0; x < settings_.width; ++x) pixel(x, y, counts);
     }
     const std::scoped_lock lock(mutex_);
+    frame_.counts.stopped += counts.stopped;
     for (std::size_t k = 0; k < counts.rays.size(); ++k) {
       frame_.counts.rays[k] += counts.rays[k];
       frame_.counts.hits[k] += counts.hits[k];
@@ -102,7 +103,7 @@ class Renderer {
     const Ray centre = camera_ray(glm::dvec2(x, y) + 0.5);
     Tests unused;
     const Hit hit = tracer_.closest(
-        centre, [this](const Hit& h) { return surfaces_.exists(h); }, unused);
+        centre, [&](Hit& h) { return surfaces_.seen(h, centre); }, unused);
     if (hit.triangle != none) layers(at, centre, hit);
   }
 
@@ -161,7 +162,11 @@ ReferenceFrame render_reference(const Scene& scene, const Pose& pose, const Came
   if (settings.spp == 0) throw input_error("reference", "no samples a pixel");
   const std::uint32_t threads =
       settings.threads != 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
-  return Renderer(scene, pose, view, settings, threads).render(threads);
+  ReferenceSettings complete = settings;
+  if (!complete.coincidence)
+    complete.coincidence =
+        std::make_shared<const Coincidence>(find_coincident(scene, {settings.opaque, settings.show_backs}));
+  return Renderer(scene, pose, view, complete, threads).render(threads);
 }
 
 }  // namespace sheaf

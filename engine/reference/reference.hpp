@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "sampling/pixel_samples.hpp"
 #include "scene/camera_path.hpp"
+#include "scene/coincident.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene.hpp"
 
@@ -26,17 +28,20 @@ struct ReferenceSettings {
   std::uint32_t width = 640, height = 360, spp = 1;  // spp: where samples are adaptive, the most
   std::optional<double> adaptive_error;              // see AdaptivePixels
   PixelFilter filter = PixelFilter::gaussian;
-  std::uint32_t depth = 4;                // generations of rays after the camera's
+  std::uint32_t depth = 4;                // bounces of a ray
   double cutoff = 0.002;                  // weights below make no further rays
   bool opaque = false;                    // every surface opaque: no alpha, no transmission
   bool transparent_glass = false;         // what is seen through transmission is not covered
+  bool show_backs = false;                // of single-sided surfaces, to camera, reflection and refraction rays
   std::optional<glm::dvec3> environment;  // else 0.4 where the scene has no light, 0 where it has
-  std::uint32_t threads = 0;              // 0: as many as the machine has; the picture does not depend on it
-  std::function<bool()> stop;             // asked between rows, by any thread: true ends it with Error{interrupted}
+  std::shared_ptr<const Coincidence> coincidence;  // null: found by render_reference
+  std::uint32_t threads = 0;                       // 0: as many as the machine has; the picture does not depend on it
+  std::function<bool()> stop;  // asked between rows, by any thread: true ends it with Error{interrupted}
 };
 
 struct ReferenceCounts {  // by kind: primary, shadow, reflection, refraction
   std::array<std::uint64_t, 4> rays{}, hits{}, box_tests{}, triangle_tests{};
+  std::uint64_t stopped = 0;  // rays that went through as many blended surfaces as a ray may
 };
 
 /// Pixels row by row from the top. Layers hold what the ray through a pixel's centre meets first; a miss: depth +inf,

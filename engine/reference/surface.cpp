@@ -34,6 +34,10 @@ double lift(const ReferenceTriangle& triangle, const Surface& s) {
   return most > 1e-5 * size && glm::dot(s.vertex_normal, s.geometric) > 0 ? most : 0;
 }
 
+constexpr double steepest = 1024;  // 1/cosine: surfaces seen flatter than that are not told apart
+
+double sum_of(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
 }  // namespace
 
 struct Surfaces::Point {
@@ -98,6 +102,28 @@ double Surfaces::transmission(const Point& p) const {
 bool Surfaces::exists(const Hit& hit) const {
   const Material& m = scene_.materials[material_of(hit)];
   return opaque_ || m.alpha_mode != AlphaMode::mask || base_color(point(hit)).a >= m.alpha_cutoff;
+}
+
+bool Surfaces::seen(Hit& hit, const Ray& ray) const {
+  const Material& m = scene_.materials[material_of(hit)];
+  const double cosine = glm::dot(front_normal(hit, -ray.direction), ray.direction);
+  const bool two_sided = show_backs_ || m.double_sided || m.transmission > 0;
+  if (!two_sided && !(cosine < 0)) return false;
+  const SurfaceRank& place = world_.instances[world_.triangles[hit.triangle].instance].rank;
+  const std::uint32_t rank = place.seen(cosine < 0);
+  if (rank != 0)
+    hit.order =
+        hit.t + rank * step_across(sum_of(ray.origin) + std::abs(hit.t)) * std::min(1 / std::abs(cosine), steepest);
+  return hit.order >= -ray.tmin && exists(hit);
+}
+
+double Surfaces::step_across(double reach) const { return 0x1p-19 * (reach + world_.rank_extent); }
+
+Ray Surface::go_on(const glm::dvec3& direction, bool back) const {
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (rank == 0) return {start(back ? geometric : -geometric), direction, 0, infinity};
+  const double steep = std::min(1 / std::abs(glm::dot(geometric, direction)), steepest);
+  return {point, direction, -((back ? rank_behind : rank) + 0.5) * step * steep, infinity};
 }
 
 glm::dvec3 Surfaces::front_normal(const Hit& hit, const glm::dvec3& otherwise) const {
@@ -166,11 +192,15 @@ Surface Surfaces::at(const Hit& hit, const glm::dvec3& direction, double width) 
   // The point is off its plane by a few ulps (1e-16) of the sums' terms, and so is the next test's view of the plane.
   const glm::dvec3 size = glm::abs(parts[0]) + glm::abs(parts[1]) + glm::abs(parts[2]);
   s.offset = 1e-12 * std::max({size.x, size.y, size.z});
+  s.step = step_across(sum_of(s.point));
   const glm::dvec3 g = front_normal(hit, -direction);
   const double curvature = spread_over(p, g, direction, std::abs(width));
   const glm::dvec3 unmapped = vertex_normal(p, g), n = mapped_normal(p, unmapped);
   s.front = glm::dot(g, direction) < 0;
   s.geometric = s.front ? g : -g;
+  s.rank = p.instance.rank.seen(s.front);
+  s.rank_behind = p.instance.rank.turns ? p.instance.rank.seen(!s.front) : last_rank;
+  if (s.rank != 0) s.offset = s.step;
   s.curvature = s.front ? curvature : -curvature;
   s.normal = s.front ? n : -n;
   s.vertex_normal = s.front ? unmapped : -unmapped;

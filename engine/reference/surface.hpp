@@ -11,6 +11,7 @@ namespace sheaf::reference {
 struct Surface {
   glm::dvec3 point;              // relative to the frame origin
   double offset;                 // how far off the surface a new ray starts
+  double step;                   // between ranks, along the normal
   glm::dvec3 geometric, normal;  // facing the ray
   glm::dvec3 vertex_normal;      // the same without a normal map
   double lift;  // along it, onto a level with the triangle's highest corner; 0 where the triangle is flat
@@ -23,8 +24,13 @@ struct Surface {
   bool volume, unlit;
   double ior;
   glm::dvec2 uv;
-  double curvature;  // of the shading normal: > 0 where the surface bulges towards the ray
+  std::uint32_t rank, rank_behind;  // in its place, as the ray met it and as one meets it that comes back; 0: alone
+  double curvature;                 // of the shading normal: > 0 where the surface bulges towards the ray
   std::uint32_t node, material;
+
+  /// Where a ray goes on: beside the surface, or, where others lie in the same place, in that place, half a step behind
+  /// the surface of that rank.
+  [[nodiscard]] Ray go_on(const glm::dvec3& direction, bool back) const;
 
   /// A start on the side that `towards` points to.
   [[nodiscard]] glm::dvec3 start(const glm::dvec3& towards) const {
@@ -41,14 +47,18 @@ struct Surface {
 /// Reads the scene's surfaces; keeps references to both, which must outlive it.
 class Surfaces {
  public:
-  Surfaces(const Scene& scene, const World& world, bool opaque)
-      : scene_(scene), world_(world), textures_(scene, opaque), opaque_(opaque) {}
+  Surfaces(const Scene& scene, const World& world, bool opaque, bool show_backs)
+      : scene_(scene), world_(world), textures_(scene, opaque), opaque_(opaque), show_backs_(show_backs || opaque) {}
 
   /// `width`: of the ray's cone at the hit; textures are means over what it covers.
   [[nodiscard]] Surface at(const Hit& hit, const glm::dvec3& direction, double width) const;
 
   /// False for a point that an alpha mask cuts out.
   [[nodiscard]] bool exists(const Hit& hit) const;
+
+  /// Whether a ray that is not a shadow ray is stopped there: the point exists, and is not a back that is hidden.
+  /// `hit` learns its order along the ray.
+  [[nodiscard]] bool seen(Hit& hit, const Ray& ray) const;
 
   /// The light that passes straight through, as shadow rays see it.
   [[nodiscard]] glm::dvec3 transmittance(const Hit& hit, const glm::dvec3& direction) const;
@@ -62,6 +72,8 @@ class Surfaces {
 
  private:
   struct Point;
+  /// Between ranks, along the normal, of hits at most so far from the origin (the sum of coordinates).
+  [[nodiscard]] double step_across(double reach) const;
   [[nodiscard]] Point point(const Hit& hit) const;
   [[nodiscard]] double spread_over(Point& p, const glm::dvec3& geometric, const glm::dvec3& direction,
                                    double width) const;
@@ -74,7 +86,7 @@ class Surfaces {
   const Scene& scene_;
   const World& world_;
   Textures textures_;
-  bool opaque_;
+  bool opaque_, show_backs_;
 };
 
 /// Unpolarised reflectance of a smooth interface from index n1 to n2; 1 in total internal reflection.

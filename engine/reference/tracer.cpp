@@ -95,7 +95,7 @@ bool intersect(const Ray& ray, const ReferenceTriangle& triangle, Hit& hit) {
   const double sum = u + v + w;
   if (sum == 0 || !std::isfinite(sum)) return false;
   hit.barycentric = glm::dvec3(u, v, w) / sum;
-  hit.t = glm::dot(hit.barycentric, glm::dvec3(a.z, b.z, c.z));
+  hit.t = hit.order = glm::dot(hit.barycentric, glm::dvec3(a.z, b.z, c.z));
   return hit.t >= ray.tmin && hit.t <= ray.tmax;
 }
 
@@ -144,20 +144,21 @@ void Tracer::walk(const Ray& ray, Tests& tests, const Visit& visit) const {
   }
 }
 
-// Only t = least and the next double above it can win, so one candidate for each is kept: the answer does not depend on
-// the order in which hits are found.
+// Only the least order and the next double above it can win, so one candidate for each is kept: the answer does not
+// depend on the order in which hits are found.
 Hit Tracer::closest(const Ray& ray, const Accepts& accepts, Tests& tests) const {
   Hit least, above;
-  walk(ray, tests, [&](const Hit& hit) {
-    if (!accepts(hit)) return infinity;
-    if (least.triangle == none || hit.t < least.t) {
-      above = least.triangle != none && least.t == next_up(hit.t) ? least : Hit{};
+  walk(ray, tests, [&](Hit hit) {
+    if (!accepts(hit) || (least.triangle != none && hit.order > next_up(least.order)))
+      return least.triangle == none ? infinity : next_up(least.order);
+    if (least.triangle == none || hit.order < least.order) {
+      above = least.triangle != none && least.order == next_up(hit.order) ? least : Hit{};
       least = hit;
     } else {
-      Hit& slot = hit.t == least.t ? least : above;
+      Hit& slot = hit.order == least.order ? least : above;
       if (hit.triangle < slot.triangle) slot = hit;  // none is the largest number
     }
-    return next_up(least.t);
+    return next_up(least.order);
   });
   return above.triangle < least.triangle ? above : least;
 }

@@ -18,6 +18,7 @@ struct Ray {
 struct Hit {
   std::uint32_t triangle = none;
   double t = 0;
+  double order = 0;           // hits are met in this order: t, but for surfaces with ranks
   glm::dvec3 barycentric{0};  // weights of v[0], v[1], v[2]
 };
 
@@ -32,9 +33,9 @@ class Tracer {
  public:
   explicit Tracer(std::span<const ReferenceTriangle> triangles, std::uint32_t threads = 1);
 
-  /// The closest of the hits that `accepts` lets count; hits whose t differ by at most one ulp are equal, and the
-  /// lowest triangle is taken. triangle == none: a miss.
-  using Accepts = std::function<bool(const Hit&)>;
+  /// The first of the hits that `accepts` lets count, which may set their order, not below t; those that differ by at
+  /// most one ulp are equal, and the lowest triangle is taken. triangle == none: a miss.
+  using Accepts = std::function<bool(Hit&)>;
   [[nodiscard]] Hit closest(const Ray& ray, const Accepts& accepts, Tests& tests) const;
 
   /// Every hit once, in no order, until `visit` returns false.

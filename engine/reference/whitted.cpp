@@ -8,6 +8,7 @@ namespace sheaf::reference {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t most_blended = 64;
 enum Kind : std::uint32_t { primary, shadow, reflection, refraction };
 
 double largest(const glm::dvec3& v) { return std::max(std::max(v.x, v.y), v.z); }
@@ -51,13 +52,13 @@ double Whitted::ior(std::uint32_t material) const { return material == none ? 1 
 
 Radiance Whitted::trace(const Ray& camera, double width, double spread, ReferenceCounts& counts) const {
   Work work{{}, {}, counts};
-  work.rays.push_back({camera, glm::dvec3(1), 1, 0, primary, {}, width, spread});
+  work.rays.push_back({camera, glm::dvec3(1), 1, 0, 0, primary, {}, width, spread});
   while (!work.rays.empty()) {
     const Pending ray = work.rays.back();
     work.rays.pop_back();
     Tests tests;
     const Hit hit = tracer_.closest(
-        ray.ray, [this](const Hit& h) { return surfaces_.exists(h); }, tests);
+        ray.ray, [&](Hit& h) { return surfaces_.seen(h, ray.ray); }, tests);
     ++counts.rays[ray.kind];
     counts.box_tests[ray.kind] += tests.boxes;
     counts.triangle_tests[ray.kind] += tests.triangles;
@@ -89,7 +90,7 @@ void Whitted::shade(const Pending& ray, const Hit& hit, Work& work) const {
     straight.weight *= 1 - s.alpha;
     straight.coverage *= 1 - s.alpha;
     straight.kind = refraction;
-    go_on(s, ray.ray.direction, straight, work);
+    go_straight(s, straight, work);
   }
   if (s.unlit) {
     work.sum.color += weight * s.base;
@@ -219,15 +220,30 @@ void Whitted::reflect(const Surface& s, const glm::dvec3& weight, const Pending&
   go_on(s, glm::normalize(way), child, work);
 }
 
-/// Lets a child go if it is worth it, and says so; `child` still holds its parent's ray and generation.
+/// Lets a child go if it is worth it, and says so; `child` still holds its parent's ray and bounces.
 bool Whitted::go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const {
-  const double worth = std::max(largest(child.weight), child.coverage);
-  if (child.generation >= settings_.depth || !(worth > 0) || worth < settings_.cutoff) return false;
+  if (child.bounces >= settings_.depth || !worth_a_ray(child)) return false;
   Pending& ray = work.rays.emplace_back(child);
-  ++ray.generation;
-  const bool back = child.kind == reflection;  // off the surface to the ray's own side; else through it
-  ray.ray = {s.start(back ? s.geometric : -s.geometric), direction, 0, infinity};
+  ++ray.bounces;
+  ray.ray = s.go_on(direction, child.kind == reflection);  // off the surface to the ray's own side; else through it
   return true;
+}
+
+/// Through a blended surface, which is no bounce but has a bound of its own.
+void Whitted::go_straight(const Surface& s, const Pending& child, Work& work) const {
+  if (!worth_a_ray(child)) return;
+  if (child.blended >= most_blended) {
+    ++work.counts.stopped;
+    return;
+  }
+  Pending& ray = work.rays.emplace_back(child);
+  ++ray.blended;
+  ray.ray = s.go_on(child.ray.direction, false);
+}
+
+bool Whitted::worth_a_ray(const Pending& ray) const {
+  const double worth = std::max(largest(ray.weight), ray.coverage);
+  return worth > 0 && worth >= settings_.cutoff;
 }
 
 }  // namespace sheaf::reference

@@ -44,7 +44,7 @@ class Whitted {
     Ray ray;
     glm::dvec3 weight{1};
     double coverage = 0;
-    std::uint32_t generation = 0, kind = 0;
+    std::uint32_t bounces = 0, blended = 0, kind = 0;  // blended: surfaces gone straight through
     Media media;
     double width = 0, spread = 0;  // of the ray's cone: at its origin, and what a unit of t adds
   };
@@ -67,6 +67,8 @@ class Whitted {
                   const Pending& parent, Work& work) const;
   void reflect(const Surface& s, const glm::dvec3& weight, const Pending& parent, Work& work) const;
   bool go_on(const Surface& s, const glm::dvec3& direction, const Pending& child, Work& work) const;
+  void go_straight(const Surface& s, const Pending& child, Work& work) const;
+  [[nodiscard]] bool worth_a_ray(const Pending& ray) const;
   [[nodiscard]] glm::dvec3 absorbed(const Pending& ray, const Surface& s, double t) const;
   [[nodiscard]] glm::dvec3 visibility(const Surface& s, const WorldLight& light, const Arriving& in,
                                       ReferenceCounts& counts) const;

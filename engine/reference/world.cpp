@@ -117,14 +117,19 @@ void add_triangles(World& world, const Mesh& mesh) {
   }
 }
 
-void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t index) {
+void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t index, const Coincidence& coincidence) {
   const Node& node = scene.nodes[index];
   static const std::vector<glm::dmat4> once{glm::dmat4(1)};
-  for (const glm::dmat4& instance : node.instances.empty() ? once : node.instances) {
+  const auto& copies = node.instances.empty() ? once : node.instances;
+  for (std::size_t copy = 0; copy < copies.size(); ++copy) {
     for (std::uint32_t m = node.first_mesh; m < node.first_mesh + node.mesh_count; ++m) {
       const Mesh& mesh = scene.meshes[m];
       const auto first = static_cast<std::uint32_t>(world.triangles.size());
-      WorldInstance& into = world.instances.emplace_back(WorldInstance{index, m, first, 1, {}, {}, {}, {}, {}, {}, {}});
+      WorldInstance& into = world.instances.emplace_back();
+      into.node = index;
+      into.mesh = m;
+      into.first_triangle = first;
+      into.rank = coincidence.of(scene, index, m, copy);
       if (node.skin != none && !mesh.joints.empty()) {
         const auto joints = joint_matrices(scene, pose, node.skin, world.origin);
         place(into, mesh, pose.morph_weights[index], [&](std::size_t v) { return blended(mesh, v, joints); });
@@ -134,7 +139,7 @@ void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t 
             into.determinants.push_back(glm::determinant(glm::dmat3(blended(mesh, v, joints))));
         if (mesh.flat) follow_faces(into, mesh);
       } else {
-        const glm::dmat4 matrix = relative_to(world.origin, pose.world[index] * instance);
+        const glm::dmat4 matrix = relative_to(world.origin, pose.world[index] * copies[copy]);
         into.side = glm::determinant(glm::dmat3(matrix)) < 0 ? -1 : 1;
         place(into, mesh, pose.morph_weights[index], [&](std::size_t) -> const glm::dmat4& { return matrix; });
         if (mesh.flat && !mesh.targets.empty()) follow_faces(into, mesh);
@@ -147,10 +152,11 @@ void add_node(World& world, const Scene& scene, const Pose& pose, std::uint32_t 
 
 }  // namespace
 
-World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin) {
+World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin, const Coincidence& coincidence) {
   World world;
+  world.rank_extent = coincidence.extent;
   world.origin = origin;
-  for (const std::uint32_t node : scene.order) add_node(world, scene, pose, node);
+  for (const std::uint32_t node : scene.order) add_node(world, scene, pose, node, coincidence);
   return world;
 }
 
@@ -159,7 +165,7 @@ World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin
 namespace sheaf {
 
 std::vector<ReferenceTriangle> reference_triangles(const Scene& scene, const Pose& pose, const glm::dvec3& origin) {
-  return reference::build_world(scene, pose, origin).triangles;
+  return reference::build_world(scene, pose, origin, {}).triangles;
 }
 
 }  // namespace sheaf

@@ -15,6 +15,7 @@ struct WorldInstance {  // one mesh of one instance of one node
   std::vector<glm::vec2> uv0, uv1;                       // where they are morphed: in place of the mesh's own
   std::vector<glm::vec4> colors;
   std::vector<double> determinants;  // of the vertices' matrices, where a joint mirrors
+  SurfaceRank rank;                                      // among what lies in the same place
 
   /// The sign that turns (v1 − v0) × (v2 − v0) to the front.
   [[nodiscard]] double side_of(const glm::uvec3& v) const {
@@ -24,10 +25,12 @@ struct WorldInstance {  // one mesh of one instance of one node
 
 struct World {
   glm::dvec3 origin{0};
+  double rank_extent = 0;  // Coincidence::extent
   std::vector<WorldInstance> instances;
   std::vector<ReferenceTriangle> triangles;
 };
 
-[[nodiscard]] World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin);
+[[nodiscard]] World build_world(const Scene& scene, const Pose& pose, const glm::dvec3& origin,
+                                const Coincidence& coincidence);
 
 }  // namespace sheaf::reference

@@ -31,6 +31,9 @@ constexpr auto choice_names(PrimaryMethod) { return std::array{"auto", "raster",
 enum class InstancePolicy { automatic, copied, shared };
 constexpr auto choice_names(InstancePolicy) { return std::array{"auto", "copied", "shared"}; }
 
+enum class BackFaces { hide, show };
+constexpr auto choice_names(BackFaces) { return std::array{"hide", "show"}; }
+
 enum class GlassAlpha { opaque, transparent };
 constexpr auto choice_names(GlassAlpha) { return std::array{"opaque", "transparent"}; }
 

@@ -23,7 +23,8 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
                              SpecConstant{SPEC_RASTER, plan.raster},
                              SpecConstant{SPEC_LANES, device.limits().subgroup},
                              SpecConstant{SPEC_TRANSLUCENT, features.transmissive},
-                             SpecConstant{SPEC_GLASS_ALPHA, settings.glass_alpha == GlassAlpha::transparent && features.transmissive}};
+                             SpecConstant{SPEC_GLASS_ALPHA, settings.glass_alpha == GlassAlpha::transparent && features.transmissive},
+                             SpecConstant{SPEC_RANKED, features.coincident}};
   generate_ = Kernel(device, "generate", constants);
 }
 
@@ -51,8 +52,8 @@ void Generate::secondary(Recorder& recorder, const RayMemory& memory, const Pare
   if (plan_.reflections) recorder.bind_list(LIST_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
   if (plan_.refractions) recorder.bind_list(LIST_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
   struct {
-    std::uint32_t kind, last, direct, sums;
-  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, parents.last ? 1U : 0U, direct, parents.sums};
+    std::uint32_t kind, direct, sums;
+  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, direct, parents.sums};
   if (is_primary || plan_.reflections) {
     memory.reflection[is_primary ? 1 : from].bind(recorder);
     recorder.dispatch_indirect(generate_, push, gpu::ARGS_PARENTS);

@@ -15,7 +15,7 @@ class Generate {
   void primary(Recorder& recorder, const RayMemory& memory, std::uint32_t rays) const;
   struct Parents {
     std::uint32_t from;  // lists 0 or 1; unused where they are the camera's rays
-    bool primary, last;  // last: no rays but shadow rays follow
+    bool primary;
     bool direct;         // the camera's rays were rasterised and not written: `primary` is left out
     std::uint32_t sums;  // gpu::SUMS_…: what the parents of one list are to their pixels
   };

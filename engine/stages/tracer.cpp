@@ -19,6 +19,8 @@ std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hi
   return {{SPEC_ANY_HIT, any_hit},
           {SPEC_MASKED, c.features.masked},
           {SPEC_TRANSLUCENT, any_hit && translucent},
+          {SPEC_ONE_SIDED, !any_hit && c.features.one_sided},
+          {SPEC_RANKED, !any_hit && c.features.coincident},
           {SPEC_COUNTED, c.counted},
           {SPEC_PIXEL_COUNTED, c.settings.layers.tests},
           {SPEC_TEXTURED, c.features.textured},

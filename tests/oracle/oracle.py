@@ -73,7 +73,8 @@ class Sums:
 
 def render_dump(scene: pathlib.Path, out: pathlib.Path, *options: object) -> pathlib.Path:
     """Every ray of a render, in out/dump."""
-    command = [sheaf_program(), "render", scene, "--out", out, "--dump", out / "dump", "--primary", "trace", *options]
+    command = [sheaf_program(), "render", scene, "--out", out, "--dump", out / "dump", "--primary", "trace",
+               "--back-faces", "show", *options]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE, check=False)
     if done.returncode:
         raise RuntimeError(f"{' '.join(map(str, command))}\nexit {done.returncode}\n{done.stderr[-2000:]}")

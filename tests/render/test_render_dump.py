@@ -110,7 +110,7 @@ def check_barycentric(dump: Dump, rays: np.ndarray, hits: np.ndarray) -> None:
 
 def dumped(sheaf, scene: str, *options: object, **named) -> Run:
     out = sheaf.new_folder()
-    return sheaf.render(scene, "--dump", out / "dump", *options, out=out, stats=True, **named)
+    return sheaf.render(scene, "--dump", out / "dump", "--back-faces", "show", *options, out=out, stats=True, **named)
 
 
 @pytest.mark.parametrize(("scene", "strategy", "options"), [

@@ -86,7 +86,7 @@ def test_ids_are_nodes_and_materials(sheaf):
 
 def test_normals_face_the_camera(sheaf):
     """double_sided.glb shows the backs of its squares."""
-    picture = sheaf.render("double_sided", "--aov", "N", size="96x48").frame()
+    picture = sheaf.render("double_sided", "--back-faces", "show", "--aov", "N", size="96x48").frame()
     check(picture.layer("N"), (0, 0, 1), picture.alpha == 1)
 
 

@@ -170,7 +170,7 @@ def test_flat_normals_made_for_meshes_without_any(sheaf, scene):
 
 
 def test_surfaces_seen_from_behind_are_lit_like_others(sheaf):
-    picture = sheaf.render("double_sided", size="64x32").frame()
+    picture = sheaf.render("double_sided", "--back-faces", "show", size="64x32").frame()
     x, y = pixels(64, 32, 2, 1)
     wanted = reflected((0.5,) * 3, (0, 0, 1), (0, 0, 1), (0, 0, 1)) * 3
     for left in (-1.25, 0.25):

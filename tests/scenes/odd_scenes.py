@@ -115,7 +115,7 @@ def zero_scale() -> bytes:
 
 
 def coplanar() -> bytes:
-    """Two meshes in one plane: of equal distances the lower triangle wins, so red covers blue everywhere."""
+    """Two meshes in one plane: what has more red comes first, so red covers blue everywhere."""
     glb = Glb()
     red, blue = glb.unlit("red", (1, 0, 0)), glb.unlit("blue", (0, 0, 1))
     return watched(glb, [glb.node(n, mesh=glb.mesh(glb.primitive(facing_z(1, 1), m), n))

@@ -62,7 +62,7 @@ RunStats sample() {
 
 TEST(StatsJson, FrameHasTheSchemasNames) {
   const json expected = json::parse(R"({
-    "frame": 12, "time_s": 0.5, "wall_ms": 250.0, "peak_device_mib": 64.5, "dispatches": 40, "counted": true, "repeated": false,
+    "frame": 12, "time_s": 0.5, "wall_ms": 250.0, "peak_device_mib": 64.5, "dispatches": 40, "blended_stopped": 0, "counted": true, "repeated": false,
     "stages": {"raster": 1.5, "generate": 0.25},
     "rays": {"primary": 10, "shadow": 20, "reflection": 0, "refraction": 0},
     "hits": {"primary": 8, "shadow": 5, "reflection": 0, "refraction": 0},
