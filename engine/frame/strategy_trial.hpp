@@ -11,7 +11,7 @@
 #include <functional>
 #include <string>
 
-#include "frame/settings.hpp"
+#include "settings/render_settings.hpp"
 
 namespace sheaf {
 

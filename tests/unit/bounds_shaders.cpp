@@ -18,7 +18,13 @@ struct Surface {
   vec3 point, point_error;
   float reach;
   vec3 geometric;
+  uint rank = 0;
 };
+// Of surfaces that lie alone: what ranks.glsl adds is not asked for.
+constexpr bool RANKED = false;
+constexpr float STEEPEST = 1024.0F;
+float sum_of(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
+float step_across(float) { return 0.0F; }
 
 #include "bundle_bound.inc"
 #include "offset.inc"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/choice.hpp"
 #include "output/exr_writer.hpp"
 
 #include <ImfChannelList.h>

@@ -39,7 +39,8 @@ RunStats sample() {
                      .brute_force = 3000,
                      .counted = true,
                      .repeated = false,
-                     .generations = {}};
+                     .generations = {},
+                     .strategies = {}};
   counted.node_object_by_level[1] = {10, 30};
   counted.generations.push_back({.index = 1,
                                  .kind = RayKind::shadow,

@@ -14,6 +14,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ._errors import RenderError, SheafError
 
@@ -79,6 +80,22 @@ class Program:
         """Runs `sheaf render`; what it leaves in `out` is whole, however it ends."""
         command = [str(self.path), "render", os.fspath(scene), "--out", str(out), *option_list(settings)]
         return run(command, timeout=timeout, environment=environment)
+
+    def list_inputs(
+        self, scene: str | os.PathLike[str], out: Path, settings: Mapping[str, object]
+    ) -> list[dict[str, Any]]:
+        """What decides each frame that `render` would make, in the order of the frames; nothing is rendered.
+
+        Raises:
+            RenderError: the program refuses the scene or a setting.
+        """
+        command = [str(self.path), "render", os.fspath(scene), "--out", str(out), "--list-inputs"]
+        told = subprocess.run(  # noqa: S603 - no shell, and the program is the one that the user named
+            [*command, *option_list(settings)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
+        )
+        if told.returncode != 0:
+            raise RenderError(told.stderr.strip(), told.returncode if told.returncode > 0 else None)
+        return [json.loads(line) for line in told.stdout.splitlines()]
 
 
 def find_program(given: str | os.PathLike[str] | None = None) -> Program:

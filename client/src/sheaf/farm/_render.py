@@ -26,6 +26,7 @@ from .._names import FrameNames, default_pattern
 from .._settings import wire_settings
 from ._ledger import Chunk, FarmOptions, Ledger
 from ._scene import Bundle, ScenePlugin, bundle, plugin_name
+from ._stock import Inputs, is_current, wanted_inputs
 from ._task import Order, Piece, Report, render_chunk
 from ._workers import Workers
 
@@ -47,6 +48,7 @@ class FarmResult:
         retried: how often a frame was tried again.
         copies: how many chunks were so late that another worker was given a copy.
         skipped: frames that were there already.
+        outdated: frames that were there of another scene, camera, setting or version, and were rendered again.
     """
 
     files: dict[int, list[Path]] = field(default_factory=dict)
@@ -58,6 +60,7 @@ class FarmResult:
     retried: int = 0
     copies: int = 0
     skipped: int = 0
+    outdated: int = 0
 
 
 def render(
@@ -95,7 +98,8 @@ def render(
             are sent back and written here, each checked against its checksum.
         scene_is_shared: whether all machines see `scene` under this very path; then it is not sent.
         program: what workers run; None finds `sheaf` beside their Python or on their PATH.
-        resume: leave frames that are there already alone; without it they are removed first.
+        resume: leave frames alone that are there already, of the same scene, camera, settings and version; all
+            others are rendered again.
         options: how frames are shared out.
         progress: called with every change.
         on_file: called with frame and path as each file is there.
@@ -125,8 +129,8 @@ def render(
         preview=preview,
     )
     run = _Run(dask, order, Ledger(numbers, options or FarmOptions()), folder, progress, on_file)
-    run.take_stock(FrameNames(pattern), resume)
     with _sent(dask, content):
+        run.take_stock(FrameNames(pattern), resume)
         return run.go()
 
 
@@ -165,18 +169,29 @@ class _Run:
 
     def take_stock(self, names: FrameNames, resume: bool) -> None:
         """Finds the frames that are there already, or removes them."""
-        there = []
+        there: dict[int, list[Path]] = {}
         for frame in self._ledger.frames:
             paths = [self._folder / names.frame(frame)]
             paths += [self._folder / names.preview(frame)] if self._order.preview else []
-            if not resume:
-                for path in paths:
-                    path.unlink(missing_ok=True)
-            elif all(path.is_file() for path in paths):
-                self._result.files[frame] = paths
-                there.append(frame)
-        self._ledger.already_there(there)
+            if resume and all(path.is_file() for path in paths):
+                there[frame] = paths
+            elif not resume:
+                _remove(paths)
+        for frame in self._outdated(there):
+            _remove(there.pop(frame))  # or a worker that writes here would take it for its own
+            self._result.outdated += 1
+        self._result.files.update(there)
+        self._ledger.already_there(list(there))
         self._result.skipped = len(there)
+
+    def _outdated(self, there: Mapping[int, list[Path]]) -> list[int]:
+        """Frames that would not be rendered as they are now."""
+        if not there:
+            return []
+        order = Order(**{**vars(self._order), "frames": tuple(there)})
+        asked: Future[dict[int, Inputs] | None] = self._dask.submit(wanted_inputs, order, pure=False)
+        wanted = asked.result()
+        return [] if wanted is None else [n for n, paths in there.items() if not is_current(paths[0], wanted[n])]
 
     def go(self) -> FarmResult:
         begun = time.monotonic()
@@ -279,6 +294,11 @@ class _Run:
         total, done = len(set(self._ledger.frames)), self._ledger.done
         state: Any = "done" if done == total else "running"
         self._progress(Progress(state, done, total, done / total, self._ledger.eta(len(self._workers))))
+
+
+def _remove(paths: Iterable[Path]) -> None:
+    for path in paths:
+        path.unlink(missing_ok=True)
 
 
 def _add(sums: dict[str, Any], more: Mapping[str, Any]) -> None:

@@ -95,8 +95,8 @@ def render_chunk(order: Order, home: str | None = None) -> Report:
         order: what.
         home: the worker's own folder; None asks the Dask worker that this runs in.
     """
-    home = home if home is not None else _own_folder()
-    program = _program(order.program)
+    home = home if home is not None else own_folder()
+    program = engine(order.program)
     with tempfile.TemporaryDirectory(prefix="sheaf-chunk-", dir=home) as folder:
         out = Path(order.out) if order.out is not None else Path(folder, "frames")
         stats = Path(folder, "stats.json")
@@ -105,12 +105,12 @@ def render_chunk(order: Order, home: str | None = None) -> Report:
             "frames": frame_list(order.frames),
             "name": order.name,
             "stats": stats,
-            "camera": _path(order.camera, order.digest, home),
+            "camera": located(order.camera, order.digest, home),
             "preview": order.preview,
             "resume": True,
             "progress": "none",
         }
-        scene = _path(order.scene, order.digest, home)
+        scene = located(order.scene, order.digest, home)
         outcome = program.render(scene or order.scene, out, settings, timeout=order.timeout)
         pieces, whole = _pieces(order, out)
         missing = len(order.frames) - len(whole)
@@ -157,17 +157,20 @@ def _totals(stats: Path) -> Mapping[str, Any]:
 
 
 @functools.cache
-def _program(name: str | None) -> Program:
+def engine(name: str | None) -> Program:
+    """The program of this machine, found once."""
     return find_program(name)
 
 
-def _path(name: str | None, digest: str | None, home: str) -> str | None:
+def located(name: str | None, digest: str | None, home: str) -> str | None:
+    """Where a file of the order lies on this machine."""
     if name is None or digest is None:
         return name
     return str(scene_folder(home, digest) / name)
 
 
-def _own_folder() -> str:
+def own_folder() -> str:
+    """The folder of the Dask worker that this runs in."""
     from distributed import get_worker  # noqa: PLC0415 - only where there is one
 
     return str(get_worker().local_directory)
