@@ -22,6 +22,7 @@
 #include "output/frame_range.hpp"
 #include "output/png_writer.hpp"
 #include "scene/gltf_loader.hpp"
+#include "settings/setting.hpp"
 
 namespace sheaf {
 namespace {

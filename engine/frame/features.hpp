@@ -27,8 +27,8 @@ struct Features {
   bool reflective = false, transmissive = false, volumes = false, blended = false, masked = false;
   bool textured = false, normal_mapped = false, unlit = false, emissive = false;
   std::vector<std::string> rough_glass;  // materials whose transmission ought to blur what is behind
-  bool coincident = false;  // some surfaces lie in one place
-  bool one_sided = false;   // some surface's back is passed through
+  bool coincident = false;               // some surfaces lie in one place
+  bool one_sided = false;                // some surface's back is passed through
   bool skinned = false, morphed = false, moving_nodes = false, moving_camera = false, moving_lights = false;
   std::shared_ptr<const Coincidence> coincidence;
   [[nodiscard]] bool translucent() const { return transmissive || blended; }

@@ -268,8 +268,8 @@ SceneLayout lay_out(const Scene& scene, const RenderSettings& settings, const Co
     instance.dynamic = none;
     instance.material = material_of[mesh.material];
     instance.object = source.node + 1;
-    instance.marks = gpu::INSTANCE_DEFORM | source.rank.rank << gpu::TRIANGLE_RANK |
-                     (source.rank.turns ? gpu::TRIANGLE_TURNS : 0);
+    instance.marks =
+        gpu::INSTANCE_DEFORM | source.rank.rank << gpu::TRIANGLE_RANK | (source.rank.turns ? gpu::TRIANGLE_TURNS : 0);
     layout.triangles += instance.triangle_count;
     if (layout.triangles > max_primitives)
       throw limit_error(scene.path, "more than " + std::to_string(max_primitives) + " triangles with all instances");

@@ -15,7 +15,7 @@ struct WorldInstance {  // one mesh of one instance of one node
   std::vector<glm::vec2> uv0, uv1;                       // where they are morphed: in place of the mesh's own
   std::vector<glm::vec4> colors;
   std::vector<double> determinants;  // of the vertices' matrices, where a joint mirrors
-  SurfaceRank rank;                                      // among what lies in the same place
+  SurfaceRank rank;                  // among what lies in the same place
 
   /// The sign that turns (v1 − v0) × (v2 − v0) to the front.
   [[nodiscard]] double side_of(const glm::uvec3& v) const {

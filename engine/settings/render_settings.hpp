@@ -48,7 +48,7 @@ struct RenderSettings : ImageSize {
 #include "settings/table.def"
 #undef PICTURE
 #undef RUN
-  bool counted = true;              // whether tests are counted; what --count, --stats and --aov come to
+  bool counted = true;  // whether tests are counted; what --count, --stats and --aov come to
 };
 
 /// Everything that the command line says.

@@ -12,19 +12,20 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
   primary_ = Kernel(device, "generate_primary", first);
   const SpecConstant one{SPEC_GROUP, 1};
   begin_ = Kernel(device, "generate_begin", {&one, 1});
-  const std::array constants{SpecConstant{SPEC_SHADOWS, plan.shadows},
-                             SpecConstant{SPEC_REFLECTIONS, plan.reflections},
-                             SpecConstant{SPEC_REFRACTIONS, plan.refractions},
-                             SpecConstant{SPEC_TEXTURED_NORMALS, plan.textured_normals},
-                             SpecConstant{SPEC_VOLUMES, features.volumes},
-                             SpecConstant{SPEC_COUNTED, settings.counted},
-                             SpecConstant{SPEC_TEXTURED, features.textured},
-                             SpecConstant{SPEC_POSED, plan.posed},
-                             SpecConstant{SPEC_RASTER, plan.raster},
-                             SpecConstant{SPEC_LANES, device.limits().subgroup},
-                             SpecConstant{SPEC_TRANSLUCENT, features.transmissive},
-                             SpecConstant{SPEC_GLASS_ALPHA, settings.glass_alpha == GlassAlpha::transparent && features.transmissive},
-                             SpecConstant{SPEC_RANKED, features.coincident}};
+  const std::array constants{
+      SpecConstant{SPEC_SHADOWS, plan.shadows},
+      SpecConstant{SPEC_REFLECTIONS, plan.reflections},
+      SpecConstant{SPEC_REFRACTIONS, plan.refractions},
+      SpecConstant{SPEC_TEXTURED_NORMALS, plan.textured_normals},
+      SpecConstant{SPEC_VOLUMES, features.volumes},
+      SpecConstant{SPEC_COUNTED, settings.counted},
+      SpecConstant{SPEC_TEXTURED, features.textured},
+      SpecConstant{SPEC_POSED, plan.posed},
+      SpecConstant{SPEC_RASTER, plan.raster},
+      SpecConstant{SPEC_LANES, device.limits().subgroup},
+      SpecConstant{SPEC_TRANSLUCENT, features.transmissive},
+      SpecConstant{SPEC_GLASS_ALPHA, settings.glass_alpha == GlassAlpha::transparent && features.transmissive},
+      SpecConstant{SPEC_RANKED, features.coincident}};
   generate_ = Kernel(device, "generate", constants);
 }
 

@@ -14,8 +14,7 @@ namespace {
 using nlohmann::json;
 
 [[noreturn]] void refuse(std::string_view key, const std::string& reason) {
-  throw Problem(ProblemKind::bad_settings, "settings." + quote(key) + ": " + reason)
-      .at(key);
+  throw Problem(ProblemKind::bad_settings, "settings." + quote(key) + ": " + reason).at(key);
 }
 
 void refuse_unknown(const json& given) {

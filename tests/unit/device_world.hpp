@@ -42,7 +42,7 @@ class DeviceWorld {
     if (options.traces) tracer_ = make_tracer(context_);
     const Motion motion = scene_.update(builder.pose, CameraView{}, recorder_);
     bind();
-    const Animate animate(device(), plan_, false);
+    const Animate animate(device(), plan_, scene_.layout());
     const Objects objects(device(), plan_);
     animate.record(recorder_, scene_, motion);
     objects.record(recorder_, scene_, motion);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "core/choice.hpp"
 #include "output/exr_writer.hpp"
 
 #include <ImfChannelList.h>
@@ -18,6 +17,7 @@
 #include <map>
 #include <random>
 
+#include "core/choice.hpp"
 #include "exr_support.hpp"
 
 namespace sheaf {

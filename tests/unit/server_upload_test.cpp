@@ -94,10 +94,27 @@ TEST(SafePath, StaysInsideItsFolder) {
   EXPECT_EQ(safe_relative_path("...x/..y"), "...x/..y");
   EXPECT_EQ(safe_relative_path("textures\\wood.png"), "textures/wood.png");
   EXPECT_EQ(safe_relative_path("./a/./b"), "a/b");
-  for (const std::string& path :
-       std::vector<std::string>{"", "/", "/a", "a/", "a//b", ".", "./", "..", "a/..", "../a", "a\\..\\b", "\\a", "\\\\host\\a",
-                                "C:\\a", "c:/a", "c:a", "a\nb",
-                                std::string("a\0b", 3), "a\x7f", std::string(256, 'x'), std::string(2000, '/')})
+  for (const std::string& path : std::vector<std::string>{"",
+                                                          "/",
+                                                          "/a",
+                                                          "a/",
+                                                          "a//b",
+                                                          ".",
+                                                          "./",
+                                                          "..",
+                                                          "a/..",
+                                                          "../a",
+                                                          "a\\..\\b",
+                                                          "\\a",
+                                                          "\\\\host\\a",
+                                                          "C:\\a",
+                                                          "c:/a",
+                                                          "c:a",
+                                                          "a\nb",
+                                                          std::string("a\0b", 3),
+                                                          "a\x7f",
+                                                          std::string(256, 'x'),
+                                                          std::string(2000, '/')})
     EXPECT_THROW((void)safe_relative_path(path), Problem) << path.substr(0, 50);
   std::string deep = "0";
   for (int i = 1; i < 16; ++i) deep += "/" + std::to_string(i);
@@ -110,8 +127,8 @@ TEST(Archives, LeaveOutWhatFileManagersAdd) {
        std::vector<std::string>{"__MACOSX/model/._a.gltf", "__MACOSX/", "a/__MACOSX/b", "._a.gltf", "a/._b", "a\\._b",
                                 ".DS_Store", "a/.DS_Store", "a/Icon\r", "Thumbs.db", "a/thumbs.db", "a/Desktop.ini"})
     EXPECT_TRUE(is_file_managers(name)) << name;
-  for (const std::string& name : std::vector<std::string>{"a.gltf", "a/", "", "MACOSX/a", "a_.gltf", "._a/b", "x.DS_Store",
-                                                          "__MACOSX", "icon", "_a"})
+  for (const std::string& name : std::vector<std::string>{"a.gltf", "a/", "", "MACOSX/a", "a_.gltf", "._a/b",
+                                                          "x.DS_Store", "__MACOSX", "icon", "_a"})
     EXPECT_EQ(is_file_managers(name), name == "__MACOSX") << name;
 }
 
