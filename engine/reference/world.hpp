@@ -10,7 +10,7 @@ namespace sheaf::reference {
 
 struct WorldInstance {  // one mesh of one instance of one node
   std::uint32_t node, mesh, first_triangle;
-  double side;                                           // sign of the matrix' determinant; 1 where skinned
+  double side = 1;                                       // sign of the matrix' determinant; 1 where skinned
   std::vector<glm::dvec3> positions, normals, tangents;  // a vertex; tangents empty where the mesh has none
   std::vector<glm::vec2> uv0, uv1;                       // where they are morphed: in place of the mesh's own
   std::vector<glm::vec4> colors;

@@ -62,9 +62,14 @@ class Mender {
         continue;
       }
       const bool list = member->is_structured();
-      visit(*member, inner, whole || (list ? contains(integer_groups, key) : contains(integers, key)));
+      visit(*member, inner, whole || (list ? holds_integers(key, *member) : contains(integers, key)));
       ++member;
     }
+  }
+
+  // A scene's `nodes` are numbers, the document's are objects.
+  static bool holds_integers(const std::string& key, const json& list) {
+    return contains(integer_groups, key) && !(key == "nodes" && !list.empty() && list.front().is_object());
   }
 
   // Why a property is taken away, or null.

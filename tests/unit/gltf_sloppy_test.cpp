@@ -363,5 +363,13 @@ TEST(SloppyGltfWarnings, AreBoundedInNumber) {
   EXPECT_TRUE(warns(scene, "480 more warnings like \"nodes[3].camera: is null")) << all_of(scene.warnings);
 }
 
+TEST(SloppyGltfFiles, NumbersThatMayHaveAFractionAreNotTakenForIntegers) {
+  GltfBuilder b = whole_document();
+  b.doc["nodes"][0]["translation"] = {0.0, 0.0, 0.0};
+  const TempFolder folder;
+  const Scene scene = load_gltf(folder.write("scene.gltf", b.text()));
+  EXPECT_EQ(all_of(scene.warnings), "");
+}
+
 }  // namespace
 }  // namespace sheaf
