@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/error.hpp"
+
 namespace sheaf {
 namespace {
 
@@ -80,14 +82,14 @@ WriteTarget find_write_target(const std::string& path) {
   std::error_code error;
   for (int links = 0; links <= max_links; ++links) {
     const fs::path folder = fs::canonical(at.has_parent_path() ? at.parent_path() : fs::path("."), error);
-    if (error || !at.has_filename()) return {path, takes_a_stream(path), {}};
+    if (error || !at.has_filename()) return {at.string(), takes_a_stream(path), {}};
     if (const auto descriptor = own_descriptor(folder / at.filename())) return {path, true, descriptor};
     if (!fs::is_symlink(fs::symlink_status(at, error))) return {at.string(), takes_a_stream(at.string()), {}};
     const fs::path link = fs::read_symlink(at, error);
     if (error) break;
     at = folder / link;  // which is `link` where that is absolute
   }
-  return {path, takes_a_stream(path), {}};
+  throw io_error(path, "cannot be followed: " + (error ? error.message() : "too many symbolic links"));
 }
 
 int write_to_stream(const WriteTarget& target, std::span<const std::byte> bytes) {

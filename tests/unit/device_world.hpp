@@ -100,6 +100,7 @@ class DeviceWorld {
     settings.strategy = options.strategy;
     settings.sort = options.sort;
     settings.memory_mib = options.memory_mib;
+    settings.back_faces = BackFaces::show;  // worlds are soups: a triangle has no outside
     return settings;
   }
   [[nodiscard]] Plan plan_for(const WorldOptions& options) const {

@@ -88,6 +88,7 @@ TEST(ReferenceGlass, TotalReflectionAtTheCriticalAngle) {
     ReferenceSettings settings;
     settings.cutoff = 0;
     settings.depth = 1;
+    settings.show_backs = true;
     return look(b, beam({0, 0, -0.5}, {std::sin(angle), 0, std::cos(angle)}), settings);
   };
   expect_color(at(critical + 1e-7), {1, 0, 0}, 0);

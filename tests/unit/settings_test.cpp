@@ -60,7 +60,7 @@ TEST(Settings, DefaultsAreThoseOfTheContract) {
   const RenderOptions options = read({});
   EXPECT_EQ(settings_json(options).dump(),
             R"({"size":"1280x720","spp":1,"filter":"gaussian","depth":4,"cutoff":0.002,"glass-alpha":"opaque",)"
-            R"("opaque":false,"z-background":10000000000.0,"primary":"auto"})");
+            R"("back-faces":"hide","opaque":false,"z-background":10000000000.0,"primary":"auto"})");
   EXPECT_EQ(options.compression, Compression::zip);
   EXPECT_FALSE(options.settings.counted);
 }

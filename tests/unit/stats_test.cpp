@@ -73,7 +73,8 @@ TEST(StatsJson, FrameHasTheSchemasNames) {
               "ray_box": {"primary": 0, "shadow": 30},
               "ray_triangle": {"primary": 0, "shadow": 20}},
     "generations": [{"generation": 1, "kind": "shadow", "rays": 20, "chunks": 5, "nodes": 3, "tight": 2, "sorted": true,
-                     "key_bits": 17, "sort_reason": "keys pay", "pairs_per_level": [10, 30]}]})");
+                     "key_bits": 17, "sort_reason": "keys pay", "pairs_per_level": [10, 30]}],
+    "strategies": []})");
   EXPECT_EQ(json(to_json(sample())["frames"][0]), expected);
 }
 
