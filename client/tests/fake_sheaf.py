@@ -27,7 +27,13 @@ OPTIONS: list[dict[str, Any]] = [
     {"name": "sort", "choices": ["auto", "on", "off"]},
     {"name": "spp", "choices": None},
 ]
-QUALITIES = {"draft": (1, 2), "production": (4, 6), "exact": (16, 12)}  # samples and depth
+QUALITIES = {
+    "draft": {"spp": "1", "depth": "2"},
+    "production": {"spp": "4", "depth": "6"},
+    "exact": {"spp": "16", "depth": "12"},
+    "rough": {"spp": "1", "depth": "2"},
+    "fine": {"spp": "4", "depth": "6"},
+}
 
 
 def main() -> None:

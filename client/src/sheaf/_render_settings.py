@@ -40,6 +40,8 @@ class RenderSettings(TypedDict, total=False):
     """Least weight of a ray worth following (0 to 1)."""
     glass_alpha: Literal["opaque", "transparent"] | None
     """Transparent: the background shows through transmission, alpha is what glass holds back."""
+    back_faces: Literal["hide", "show"] | None
+    """Hide: the backs of single-sided surfaces are passed through, as glTF says."""
     opaque: bool | None
     """Every surface opaque and two-sided."""
     environment: str | tuple[float, float, float] | None
@@ -49,7 +51,7 @@ class RenderSettings(TypedDict, total=False):
     z_background: float | str | None
     """Layer Z where nothing is hit (metres)."""
     compression: Literal["none", "rle", "zips", "zip", "piz", "dwaa"] | None
-    """How the frames are compressed."""
+    """How the frames are compressed; dwaa loses colour, and ffmpeg reads no layers beside it."""
     strategy: (
         Literal[
             "auto",
@@ -135,6 +137,13 @@ SETTINGS: Mapping[str, Setting] = {
         "opaque",
         "transparent: the background shows through transmission, alpha is what glass holds back",
     ),
+    "back-faces": Setting(
+        "choice",
+        "NAME",
+        ("hide", "show"),
+        "hide",
+        "hide: the backs of single-sided surfaces are passed through, as glTF says",
+    ),
     "opaque": Setting("flag", "", (), False, "every surface opaque and two-sided"),
     "environment": Setting(
         "color",
@@ -148,7 +157,11 @@ SETTINGS: Mapping[str, Setting] = {
     ),
     "z-background": Setting("number-or-inf", "X|inf", (), 10000000000.0, "layer Z where nothing is hit"),
     "compression": Setting(
-        "choice", "NAME", ("none", "rle", "zips", "zip", "piz", "dwaa"), "zip", "how the frames are compressed"
+        "choice",
+        "NAME",
+        ("none", "rle", "zips", "zip", "piz", "dwaa"),
+        "zip",
+        "how the frames are compressed; dwaa loses colour, and ffmpeg reads no layers beside it",
     ),
     "strategy": Setting(
         "choice",
