@@ -31,8 +31,6 @@ QUALITIES = {
     "draft": {"spp": "1", "depth": "2"},
     "production": {"spp": "4", "depth": "6"},
     "exact": {"spp": "16", "depth": "12"},
-    "rough": {"spp": "1", "depth": "2"},
-    "fine": {"spp": "4", "depth": "6"},
 }
 
 

@@ -111,7 +111,7 @@ def test_errors_fronts_and_named_settings() -> None:
 
 
 def test_the_program_says_which_settings_are_named() -> None:
-    assert find_program(fake_sheaf.__file__).qualities == ("rough", "fine")
+    assert find_program(fake_sheaf.__file__).qualities == ("draft", "production", "exact")
 
 
 def test_further_knobs_are_tried() -> None:
