@@ -16,7 +16,8 @@ namespace sheaf {
 namespace {
 
 constexpr std::uint64_t most_triangles = 4'000'000;
-constexpr double tolerance = 0x1p-20;  // of the distance from the scene's middle: nearer planes are one
+constexpr std::uint64_t most_looks = 20'000'000;  // at pairs of triangles: a second at most
+constexpr double tolerance = 0x1p-20;             // of the distance from the scene's middle: nearer planes are one
 constexpr double turn_cell = 0x1p-6, turn_slack = 0x1p-11;     // of a unit normal's coordinates
 constexpr double depth_cell = 0x1p-12, depth_slack = 0x1p-18;  // of the scene's size
 
@@ -134,9 +135,11 @@ class Search {
     for (std::size_t e = first; e < end; ++e) flats.push_back(flat(entries_[e], axis));
     std::sort(flats.begin(), flats.end(), [](const Flat& a, const Flat& b) { return a.lo.x < b.lo.x; });
     for (std::size_t i = 0; i < flats.size(); ++i)
-      for (std::size_t k = i + 1; k < flats.size() && flats[k].lo.x < flats[i].hi.x; ++k)
+      for (std::size_t k = i + 1; k < flats.size() && flats[k].lo.x < flats[i].hi.x; ++k) {
+        if (++looks_ > most_looks) return;
         if (flats[i].surface != flats[k].surface && flats[k].lo.y < flats[i].hi.y && flats[i].lo.y < flats[k].hi.y)
           compare(flats[i], flats[k]);
+      }
   }
 
   void compare(const Flat& a, const Flat& b) {
@@ -235,6 +238,7 @@ class Search {
   double size_ = 1;
   std::vector<Entry> entries_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> neighbours_;
+  std::uint64_t looks_ = 0;
 };
 
 }  // namespace
