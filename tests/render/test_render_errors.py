@@ -82,7 +82,14 @@ BAD_SCENES = {
     "required": (glb(ASSET | {"extensionsUsed": ["EXT_made_up"], "extensionsRequired": ["EXT_made_up"]}), "EXT_made_up"),
     "mesh index": (glb(ASSET | {"nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}], "scene": 0}), "mesh"),
     "cycle": (glb(ASSET | {"nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]}), "node"),
-    "outside": (glb(ASSET | {"buffers": [{"byteLength": 4, "uri": "../../../etc/hostname"}]}), "buffer"),
+    "outside": (glb(ASSET | {
+        "buffers": [{"byteLength": 36, "uri": "../../../etc/hostname"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0,
+    }), "buffer"),
 }
 
 

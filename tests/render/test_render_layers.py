@@ -148,8 +148,8 @@ def test_layers_are_of_the_first_sample(sheaf):
     """Unfiltered: depths at an edge are never in between."""
     picture = sheaf.render("unlit", "--spp", 4, "--aov", "Z,id", size="47x24").frame()
     depth = picture.layer("Z")
-    np.testing.assert_allclose(depth[np.isfinite(depth)], 5, atol=1e-5)
-    assert np.array_equal(np.isfinite(depth), picture.channels["id.object"] != 0)
+    np.testing.assert_allclose(depth[depth < 1e9], 5, atol=1e-5)
+    assert np.array_equal(depth < 1e9, picture.channels["id.object"] != 0)
     assert ((picture.alpha > 0) & (picture.alpha < 1)).any()
 
 

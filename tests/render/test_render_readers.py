@@ -44,11 +44,12 @@ def test_openimageio_reads_the_very_pixels(sheaf, tmp_path, compression, layers)
 
 @pytest.mark.parametrize("compression", ["none", "rle", "zips", "zip", "piz"])
 @pytest.mark.parametrize("layers", [(), ("--aov", "Z,albedo,N")], ids=["colour", "layers"])
-def test_ffmpeg_reads_the_very_colours(sheaf, compression, layers):
+def test_ffmpeg_reads_the_colours(sheaf, compression, layers):
     needs("ffmpeg")
     render = sheaf.render("whitted", "--compression", compression, *layers, size=SIZE)
     picture: Picture = render.frame()
-    assert np.array_equal(by_ffmpeg(render.files[0]), picture.rgba[..., :3].astype(np.float32))
+    # ffmpeg 5.1 decodes halves to 16 bits between 0 and 1.
+    np.testing.assert_allclose(by_ffmpeg(render.files[0]), np.clip(picture.rgba[..., :3].astype(np.float32), 0, 1), atol=1e-3)
 
 
 def test_dwaa_of_colour_alone_is_read_and_says_nothing(sheaf):
