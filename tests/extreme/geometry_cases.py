@@ -205,7 +205,7 @@ CASES = {
     "through vertices": Case(lambda: through_vertices(False), everywhere(WHITE)),
     "through vertices, other diagonal, traced": Case(lambda: through_vertices(True), everywhere(WHITE), TRACED),
     "in the plane of a triangle": Case(edge_on, everywhere(WHITE)),
-    "inside a closed mesh": Case(inside_a_sphere, everywhere(WHITE), ("--spp", 8, *TRACED)),
+    "inside a closed mesh": Case(inside_a_sphere, everywhere(WHITE), ("--spp", 8, "--back-faces", "show", *TRACED)),
     "grid on voxel borders": Case(voxel_mirror, everywhere((0.5, 0.5, 0.5)), (*FURNACE, *TRACED, "--sort", "on")),
     "touching boxes": Case(touching_boxes, everywhere(WHITE), TRACED),
     "scale 1e6 by 1e-6": Case(anisotropic, SQUARE),

@@ -30,7 +30,7 @@ def test_the_normal_of_a_tilted_square(sheaf, tmp_path, scale, behind):
     watched_from(glb, glb.mesh(glb.primitive(shape, glb.material("matte", (1, 1, 1)))), scale)
     path = tmp_path / "scene.glb"
     path.write_bytes(glb.bytes())
-    for run in sheaf.all({"scene": path, "options": ("--aov", "N"), "strategy": s, "size": "8x8"}
+    for run in sheaf.all({"scene": path, "options": ("--aov", "N", "--back-faces", "show"), "strategy": s, "size": "8x8"}
                          for s in ("bvh", "reference")):
         np.testing.assert_allclose(run.frame().layer("N"), np.broadcast_to((0, -R, R), (8, 8, 3)), atol=1e-6)
 
