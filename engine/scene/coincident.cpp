@@ -249,6 +249,7 @@ SurfaceRank Coincidence::of(const Scene& scene, std::uint32_t node, std::uint32_
 }
 
 Coincidence find_coincident(const Scene& scene, const SurfaceView& view) {
+  if (view.opaque) return {};  // what an outside checker can follow: the nearest hit
   std::uint64_t triangles = 0;
   for (const std::uint32_t index : scene.order) {
     const Node& node = scene.nodes[index];
