@@ -47,7 +47,7 @@ class Engine(Program):
         return Outcome(0, 0.1)
 
 
-ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}), ("rough", "fine"))
+ENGINE = Engine(Path("sheaf"), "sheaf 9.9.9", ALL, frozenset({"spp", "depth"}), ("draft", "production"))
 
 
 def found(options: StudyOptions = SMALL, scene: str = "report-moving.glb", **more: Any) -> dict[str, Any]:
@@ -101,9 +101,9 @@ def test_errors_fronts_and_named_settings() -> None:
     assert knobs[(2, 1)]["error"]["worst"] == pytest.approx(0.075 - 0.05 / 17, abs=1e-3)
     assert 0 < knobs[(2, 1)]["error"]["flip"] < 1
     # What the program itself names, by its own meaning.
-    assert [trial["name"] for trial in scene["knobs"][:3]] == ["rough", "fine", None]
+    assert [trial["name"] for trial in scene["knobs"][:3]] == ["draft", "production", None]
     assert [trial["settings"] for trial in scene["knobs"][:2]] == [
-        {"strategy": "bvh", "quality": name} for name in ("rough", "fine")
+        {"strategy": "bvh", "quality": name} for name in ("draft", "production")
     ]
     assert scene["knobs"][1]["error"]["rmse"] == pytest.approx(0.025 + 0.05 / 7 - 0.05 / 17, rel=0.01)
     assert knobs[(1, 1)]["pareto"] == {"time": True, "tests": True}  # the cheapest of all
@@ -163,7 +163,7 @@ def check_page(text: str) -> None:
     assert {anchor.removeprefix("#") for anchor in page.anchors} <= set(page.ids)
     assert "report &lt;b&gt;&amp;" in text
     assert "url(" not in text
-    for words in ("rough", "Pareto front", "same again", "llvmpipe (made up)", "9.9.9"):
+    for words in ("draft", "Pareto front", "same again", "llvmpipe (made up)", "9.9.9"):
         assert words in text
 
 

@@ -51,5 +51,5 @@ CASES = {
     "a spline that overshoots": Case(lambda: moved(spline([0, 1], ZERO, [(0, 0, 0), (-8, 0, 0)], [(8, 0, 0), (0, 0, 0)])),
                                      {0: square_at(0), 12: square_at(2)}),
     "scale through zero": Case(lambda: moved(("scale", [0, 1], [(1, 1, 1), (-1, -1, -1)], "LINEAR")),
-                               {12: nothing, 24: square_at(0)}),
+                               {12: nothing, 24: square_at(0)}, ("--back-faces", "show")),  # a mirror turns its front away
 }

@@ -61,7 +61,7 @@ def test_shadows_of_dark_glass(sheaf, tmp_path, lamp, colour, distance, passed):
             nodes.append(glb.node("slab", mesh=glb.mesh(glb.primitive(box((1, 40, 40), (20, 0, 0)), volume(
                 glb, colour=colour, distance=distance)))))
         at = (1000, 0, 10)
-        nodes.append(glb.light("lamp", lamp, 3e6 if lamp == "point" else 100, placed={
+        nodes.append(glb.light("lamp", lamp, 6e6 if lamp == "point" else 100, placed={
             "translation": at, "rotation": look_at(at, (0, 0, -1))}))
         pictures.append(both(sheaf, tmp_path, glb, nodes))
     for clear, tinted in zip(*pictures):
