@@ -13,7 +13,6 @@
 #include <cstdlib>
 
 #include "jobs/landlock.hpp"
-#include "jobs/system_call_filter.hpp"
 
 namespace sheaf::server {
 namespace {
@@ -104,10 +103,18 @@ bool limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   return ::setrlimit(resource, &wanted) == 0;
 }
 
+/// It is the same for all workers.
+const SystemCallFilter& shared_filter() {
+  static const SystemCallFilter filter;
+  return filter;
+}
+
 }  // namespace
 
 Confinement::Confinement(const ConfinementOptions& options, const std::string& program, const fs::path& folder)
-    : options_(options), ruleset_(options.on ? ruleset_for(options, program, folder) : Fd()) {}
+    : options_(options),
+      ruleset_(options.on ? ruleset_for(options, program, folder) : Fd()),
+      filter_(&shared_filter()) {}
 
 unsigned Confinement::apply() const noexcept {
   unsigned held = 0;
@@ -123,7 +130,7 @@ unsigned Confinement::apply() const noexcept {
   if (!options_.on) return held;
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) held |= no_new_privileges;
   if (ruleset_.valid() && FileRules::enforce(ruleset_.get())) held |= files;
-  if (install_system_call_filter()) held |= system_calls;
+  if (filter_->install()) held |= system_calls;
   return held;
 }
 

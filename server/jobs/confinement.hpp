@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/system_call_filter.hpp"
 #include "util/fd.hpp"
 
 namespace sheaf::server {
@@ -35,6 +36,7 @@ class Confinement {
  private:
   ConfinementOptions options_;
   Fd ruleset_;
+  const SystemCallFilter* filter_;
 };
 
 /// Tries every measure in a child: names of those that hold here.
