@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Signals for the programs that tests start. A shell starts what runs in its background (`nohup pytest … &`) with SIGINT
-ignored, children inherit that, and a test that interrupts one which keeps to it would wait for ever. What this process
-handles itself is at its default in its children."""
+"""Signals for the programs that tests start. A shell starts what runs in its background (`nohup pytest … &`) with
+SIGINT ignored, children inherit that, and a test that interrupts one which keeps to it would wait for ever. What this
+process handles itself is at its default in its children."""
 
 from __future__ import annotations
 

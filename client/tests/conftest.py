@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import OpenEXR
 import pytest
-from fake_service import FakeJob, FakeService
 
 import sheaf
+from fake_service import FakeJob, FakeService
 from sheaf.cli import main
 
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fake_service import FakeJob, FakeService, cut_short, hang_up, problem
 
 import sheaf
+from fake_service import FakeJob, FakeService, cut_short, hang_up, problem
 
 Use = Callable[[sheaf.AsyncClient], Awaitable[Any]]
 

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import colour, exr_bytes
-from fake_service import FakeJob, FakeService
 
 import sheaf
+from conftest import colour, exr_bytes
+from fake_service import FakeJob, FakeService
 from sheaf.cli import main
 
 

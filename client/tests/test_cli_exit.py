@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
 from fake_service import FakeJob, FakeService, problem
 
 

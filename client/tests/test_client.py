@@ -8,9 +8,9 @@ from pathlib import Path
 
 import httpx
 import pytest
-from fake_service import FakeJob, FakeService, hang_up, problem
 
 import sheaf
+from fake_service import FakeJob, FakeService, hang_up, problem
 
 GLTF = b'{"asset": {"version": "2.0"}}'
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import httpx
 import pytest
-from fake_service import FakeJob, FakeService, Handler, cut_short, problem, sha256
 
 import sheaf
+from fake_service import FakeJob, FakeService, Handler, cut_short, problem, sha256
 
 
 def test_download(client: sheaf.Client, done_job: FakeJob, tmp_path: Path, exr: bytes) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import colour, exr_bytes
 
 import sheaf
+from conftest import colour, exr_bytes
 from sheaf._exr import group_layers
 
 RANDOM = np.random.default_rng(7)

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import fake_sheaf
 import pytest
 from distributed import Client as DaskClient
 from distributed import LocalCluster
 
+import fake_sheaf
 import sheaf
 from sheaf import farm
 from sheaf.cli import main

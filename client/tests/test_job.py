@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import colour
-from fake_service import FakeJob, FakeService, Handler, hang_up, problem
 
 import sheaf
+from conftest import colour
+from fake_service import FakeJob, FakeService, Handler, hang_up, problem
 
 FRAME_EVENTS: list[tuple[str, dict[str, Any]]] = [
     ("state", {"state": "running"}),

@@ -15,10 +15,10 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
-import fake_sheaf
 import numpy as np
 import pytest
 
+import fake_sheaf
 from sheaf._program import Outcome, Program, find_program, option_list
 from sheaf.cli import main
 from sheaf.report import Study, StudyOptions, study, write_report, write_sample

@@ -137,7 +137,7 @@ def formatted(text: str) -> str:
     """As the package's formatter has it, where that is installed."""
     for program in (pathlib.Path(sys.executable).with_name("ruff"), ROOT / "build/venv/bin/ruff"):
         if program.is_file():
-            command = [program, "format", "--stdin-filename", "client/src/sheaf/_render_settings.py", "-"]
+            command = [program, "format", "--stdin-filename", ROOT / "client/src/sheaf/_render_settings.py", "-"]
             told = subprocess.run(command, input=text, text=True, capture_output=True, check=True, cwd=ROOT / "client")
             return told.stdout
     raise SystemExit("no ruff: pip install -e './client[dev]'")
@@ -152,10 +152,12 @@ def markdown_text(table: list[dict]) -> str:
         "<!-- SPDX-License-Identifier: MIT. Written by engine/settings/generate.py from engine/settings/table.def. -->",
         "# Settings",
         "",
-        "Every option of `sheaf render`. `sheaf options --json` prints the same for programs. A service takes those that are",
+        "Every option of `sheaf render`. `sheaf options --json` prints the same for programs. A service takes those "
+        "that are",
         "marked in a job's `settings`, by the same names; the Python client takes them with `_` for `-`.",
         "",
-        "What an option decides: `view` (which scene, camera and time the picture shows), `pixels` (written into each frame as",
+        "What an option decides: `view` (which scene, camera and time the picture shows), `pixels` (written into each "
+        "frame as",
         "`sheaf:settings`), `speed` (time and memory, no pixel) or `output` (what else is written and said).",
     ]
     group = None
@@ -191,7 +193,9 @@ def main() -> int:
     parser.add_argument("--sheaf", type=pathlib.Path, default=ROOT / "build/sheaf")
     parser.add_argument("--check", action="store_true")
     arguments = parser.parse_args()
-    stale = [path for path, text in generated(arguments.sheaf).items() if not path.is_file() or path.read_text() != text]
+    stale = [
+        path for path, text in generated(arguments.sheaf).items() if not path.is_file() or path.read_text() != text
+    ]
     for path in stale:
         if arguments.check:
             print(f"{path.relative_to(ROOT)} is not what the table of settings says: run engine/settings/generate.py")

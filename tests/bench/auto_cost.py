@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What `--strategy auto` costs: whole processes by auto, bvh and hybrid, in turn, and auto's time over that of the better.
+"""What `--strategy auto` costs: whole processes by auto, bvh and hybrid, in turn, and auto's time over the better's.
 
     tests/bench/auto_cost.py                     scenes, sizes, frames and samples of the plan, kernels cached
     tests/bench/auto_cost.py --cold              each run with a cache of kernels of its own, empty
     tests/bench/auto_cost.py --only whitted,24   lines of the plan whose text has all of these
 
-A line: wall and CPU seconds of each strategy (the least of the rounds), and both ratios. CPU time holds on a machine that
-others use. Times are shown, never asserted.
+A line: wall and CPU seconds of each strategy (the least of the rounds), and both ratios. CPU time holds on a
+machine that others use. Times are shown, never asserted.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ BUILD = Path(os.environ.get("SHEAF_BUILD", HERE.parents[1] / "build")).resolve()
 # Scene, size, frames, samples.
 PLAN = [
     *(("whitted", size, frames, 1) for size in ("320x180", "640x360", "1280x720") for frames in (1, 2, 5, 24)),
-    ("whitted", "320x180", 240, 1), ("whitted", "320x180", 1, 16), ("whitted", "640x360", 5, 16), ("whitted", "1280x720", 1, 16),
+    ("whitted", "320x180", 240, 1), ("whitted", "320x180", 1, 16), ("whitted", "640x360", 5, 16),
+    ("whitted", "1280x720", 1, 16),
     ("cornell", "320x180", 240, 1), ("cornell", "640x360", 24, 1), ("cornell", "1280x720", 2, 16),
     ("nested_glass", "640x360", 1, 1), ("nested_glass", "640x360", 1, 16), ("nested_glass", "1280x720", 1, 16),
     ("spheres", "320x180", 24, 1), ("spheres", "640x360", 5, 1), ("spheres", "1280x720", 24, 1),

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from glb import Glb, snap
 from shapes import Shape, facing_up, joined, smooth_normals, sphere
 

@@ -28,11 +28,10 @@ sys.dont_write_bytecode = True
 
 from cases import ASSETS, CASES  # noqa: E402
 from counts import count  # noqa: E402
+from engine import Engine  # noqa: E402
 from measure import Settings, measure, prepare  # noqa: E402
 from report import lines_of, print_frames, print_lines  # noqa: E402
 from sweeps import job, linearity  # noqa: E402
-
-from engine import Engine  # noqa: E402
 
 QUICK = ("cornell", "whitted", "spheres", "city 10K")
 STRATEGIES = ("auto", "hybrid", "bvh", "rayquery", "frustum", "classify", "crsh", "rsh", "brute")

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from measure import Scene, size_text
-
 from engine import Engine, TookTooLongError
+from measure import Scene, size_text
 
 COUNTED = ("rsh", "crsh", "hybrid", "bvh", "frustum", "classify")
 KINDS = ("primary", "shadow", "reflection", "refraction")

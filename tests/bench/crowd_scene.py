@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from glb import Glb, snap
 from shapes import Shape, facing_up, facing_z, smooth_normals
 

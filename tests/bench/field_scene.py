@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from glb import Glb
 from shapes import facing_up, sphere
 

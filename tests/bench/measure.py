@@ -12,9 +12,8 @@ from typing import Any
 
 from cases import Case, camera_path
 from embree_contender import METHODS, Embree, Round
-from passes import passing_triangles
-
 from engine import Engine, Run, TookTooLongError
+from passes import passing_triangles
 
 PROBE_SIZE = (160, 90)
 ALWAYS = ("auto", "hybrid", "bvh", "rayquery")  # measured however long they take

@@ -7,9 +7,8 @@ import statistics
 from pathlib import Path
 from typing import Any
 
-from measure import calmest, prepare, size_text
-
 from engine import Engine
+from measure import calmest, prepare, size_text
 
 SWEEP_SIZE = (352, 198)  # with depth 4, a quarter of a million rays of the animation at one sample a pixel
 SAMPLES = (1, 4, 16, 64)

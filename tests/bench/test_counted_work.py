@@ -40,10 +40,15 @@ def test_threads_do_not_change_counts(strategy: str) -> None:
     assert not counted_work.differences(one, three)
 
 
-@pytest.mark.parametrize(("case", "kind", "least"), [
-    ("cornell", "shadow", 0.5), ("cornell", "reflection", 0.25),
-    ("whitted", "shadow", 0.5), ("whitted", "reflection", 0.25),
-])
+@pytest.mark.parametrize(
+    ("case", "kind", "least"),
+    [
+        ("cornell", "shadow", 0.5),
+        ("cornell", "reflection", 0.25),
+        ("whitted", "shadow", 0.5),
+        ("whitted", "reflection", 0.25),
+    ],
+)
 def test_sorting_and_meshes_save_what_was_published(case: str, kind: str, least: float) -> None:
     """C, section 5: half of the tests of shadow rays and a quarter of those of reflection rays, against H."""
     for crsh, rsh in zip(EXPECTED["work"][f"{case}, crsh"], EXPECTED["work"][f"{case}, rsh"], strict=True):

@@ -5,12 +5,26 @@ from __future__ import annotations
 
 import math
 
-from case import (BLUE, FURNACE, NO_LIGHT, TRACED, WHITE, Case, everywhere, mirror, nothing, one_mesh, sane, shows,
-                  triangles_of, unlit)
+from case import (
+    BLUE,
+    FURNACE,
+    NO_LIGHT,
+    TRACED,
+    WHITE,
+    Case,
+    everywhere,
+    mirror,
+    nothing,
+    one_mesh,
+    sane,
+    shows,
+    triangles_of,
+    unlit,
+)
 from geometry_scenes import watched
 from glb import Glb
 from rendering import SCENES
-from shapes import Shape, box, facing_z, joined
+from shapes import Shape, box, facing_z
 
 
 def in_a_box(lens, eye=(0, 0, 0)) -> bytes:
@@ -29,8 +43,10 @@ def bare_perspective(yfov: float, near=1e-4):
 def on_a_surface(*points) -> bytes:
     """The camera's eye lies in a triangle that it must not see, the square is behind it."""
     glb = Glb()
-    primitives = [glb.primitive(triangles_of(points), glb.unlit("blue", BLUE)),
-                  glb.primitive(facing_z(1, 1), glb.unlit("white", WHITE))]
+    primitives = [
+        glb.primitive(triangles_of(points), glb.unlit("blue", BLUE)),
+        glb.primitive(facing_z(1, 1), glb.unlit("white", WHITE)),
+    ]
     return watched(glb, [glb.node("both", mesh=glb.mesh(primitives))])
 
 
@@ -44,30 +60,51 @@ def framed_whole(picture) -> None:
     sane(picture)
     covered = picture.alpha > 0
     assert covered.sum() > 20
-    assert not (covered[0].any() or covered[-1].any() or covered[:, 0].any() or covered[:, -1].any())
+    assert not (covered[0].any())
+    assert not (covered[-1].any())
+    assert not (covered[:, 0].any())
+    assert not (covered[:, -1].any())
 
 
 HALF = lambda x, y: (abs(x) < 0.5) & (abs(y) < 0.5)  # noqa: E731
 SQUARE = shows(WHITE, HALF)
 CASES = {
     "one pixel": Case(lambda: one_mesh(facing_z(1, 1), unlit()), everywhere(WHITE), size="1x1"),
-    "16384 pixels wide": Case(lambda: one_mesh(facing_z(2000, 1), unlit()),
-                              shows(WHITE, lambda x, y: abs(x) < 1000, extent=(16384, 1)), TRACED, size="16384x1"),
-    "16384 pixels high": Case(lambda: one_mesh(facing_z(1, 1), unlit()),
-                              shows(WHITE, lambda x, y: abs(y) < 0.5, extent=(1 / 16384, 1)), TRACED, size="1x16384"),
-    "16384 pixels wide, rasterised": Case(lambda: one_mesh(facing_z(2000, 1), unlit()),
-                                          shows(WHITE, lambda x, y: abs(x) < 1000, extent=(16384, 1)), size="16384x1"),
+    "16384 pixels wide": Case(
+        lambda: one_mesh(facing_z(2000, 1), unlit()),
+        shows(WHITE, lambda x, y: abs(x) < 1000, extent=(16384, 1)),
+        TRACED,
+        size="16384x1",
+    ),
+    "16384 pixels high": Case(
+        lambda: one_mesh(facing_z(1, 1), unlit()),
+        shows(WHITE, lambda x, y: abs(y) < 0.5, extent=(1 / 16384, 1)),
+        TRACED,
+        size="1x16384",
+    ),
+    "16384 pixels wide, rasterised": Case(
+        lambda: one_mesh(facing_z(2000, 1), unlit()),
+        shows(WHITE, lambda x, y: abs(x) < 1000, extent=(16384, 1)),
+        size="16384x1",
+    ),
     "no triangle": Case((SCENES / "no_triangles.glb").read_bytes, nothing),
     "nothing at all": Case((SCENES / "empty.glb").read_bytes, nothing),
     "no camera": Case((SCENES / "no_camera.glb").read_bytes, framed_whole),
     "two million rays to one triangle": Case(two_million_rays, everywhere((0.5, 0.5, 0.5)), FURNACE, size="2048x1024"),
-    "orthographic camera inside a solid": Case(lambda: in_a_box(lambda glb: glb.orthographic("camera", 0.5, 0.5)),
-                                               everywhere(WHITE), ("--back-faces", "show")),
-    "field of 1e-5 radians": Case(lambda: in_a_box(bare_perspective(1e-5)), everywhere(WHITE), ("--back-faces", "show")),
-    "field of 179.9 degrees": Case(lambda: in_a_box(bare_perspective(math.radians(179.9))), everywhere(WHITE),
-                                 ("--back-faces", "show", *TRACED)),
-    "near plane at 1e-30": Case(lambda: in_a_box(bare_perspective(1.0, 1e-30)), everywhere(WHITE), ("--back-faces", "show")),
+    "orthographic camera inside a solid": Case(
+        lambda: in_a_box(lambda glb: glb.orthographic("camera", 0.5, 0.5)), everywhere(WHITE), ("--back-faces", "show")
+    ),
+    "field of 1e-5 radians": Case(
+        lambda: in_a_box(bare_perspective(1e-5)), everywhere(WHITE), ("--back-faces", "show")
+    ),
+    "field of 179.9 degrees": Case(
+        lambda: in_a_box(bare_perspective(math.radians(179.9))), everywhere(WHITE), ("--back-faces", "show", *TRACED)
+    ),
+    "near plane at 1e-30": Case(
+        lambda: in_a_box(bare_perspective(1.0, 1e-30)), everywhere(WHITE), ("--back-faces", "show")
+    ),
     "camera in the plane of a triangle": Case(lambda: on_a_surface((0, -1, 5), (0, 1, 5), (0, 0, 4)), SQUARE, TRACED),
-    "camera on a surface and a vertex": Case(lambda: on_a_surface((-3, -3, 5), (3, -3, 5), (0, 3, 5), (0, 0, 5), (3, 0, 6),
-                                                                  (0, 3, 6)), SQUARE),
+    "camera on a surface and a vertex": Case(
+        lambda: on_a_surface((-3, -3, 5), (3, -3, 5), (0, 3, 5), (0, 0, 5), (3, 0, 6), (0, 3, 6)), SQUARE
+    ),
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What an extreme case is: a scene made on the spot, how it is rendered, and the known answer that a picture is held to."""
+"""What an extreme case is: a scene made on the spot, how it is rendered, and the known answer for its picture."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+
 from geometry_scenes import watched
 from glb import Glb
 from physics import close, pixels
@@ -67,6 +68,7 @@ NO_LIGHT = lamp(0, (0, 0, 1))  # a scene without lights is given one, whose glin
 
 def everywhere(colour, **tolerance) -> Callable[[Picture], None]:
     """Every pixel is covered and of this colour."""
+
     def check(picture: Picture) -> None:
         assert (picture.alpha == 1).all(), f"{(picture.alpha != 1).sum()} pixels see past it"
         close(picture.rgb, colour, **tolerance)
@@ -78,9 +80,9 @@ def nothing(picture: Picture) -> None:
     assert not picture.rgba.any()
 
 
-def shows(colour, where: Callable[[np.ndarray, np.ndarray], np.ndarray], extent=(2.0, 1.0),
-          covers=1.0, **tolerance):
+def shows(colour, where: Callable[[np.ndarray, np.ndarray], np.ndarray], extent=(2.0, 1.0), covers=1.0, **tolerance):
     """Covered and of this colour exactly where `where(x, y)` says so of a pixel's centre (in metres), else empty."""
+
     def check(picture: Picture) -> None:
         height, width = picture.alpha.shape
         wanted = where(*pixels(width, height, *extent))

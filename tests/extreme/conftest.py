@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+import json
 import pathlib
 import sys
 
@@ -8,7 +9,7 @@ HERE = pathlib.Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "render"), str(HERE.parent / "scenes")]
 sys.dont_write_bytecode = True
 
-from rendering import Sheaf, program  # noqa: E402
+from rendering import Sheaf, program
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -24,8 +25,6 @@ def sheaf(tmp_path: pathlib.Path) -> Sheaf:
 @pytest.fixture(scope="session")
 def device_strategies(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     """Those that this device has."""
-    import json
-
     run = Sheaf(tmp_path_factory.mktemp("devices"))("devices", "--json")
     has_ray_query = json.loads(run.stdout)[0]["ray_query"]
     return ["bvh", "hybrid", "crsh", "rsh", "frustum", "classify", "brute"] + (["rayquery"] if has_ray_query else [])

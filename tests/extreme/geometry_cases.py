@@ -6,8 +6,25 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from case import (BLUE, FURNACE, NO_LIGHT, RED, TRACED, WHITE, Case, everywhere, matte, mirror, nothing, one_mesh, sane, shows,
-                  triangles_of, unlit)
+
+from case import (
+    BLUE,
+    FURNACE,
+    NO_LIGHT,
+    RED,
+    TRACED,
+    WHITE,
+    Case,
+    everywhere,
+    matte,
+    mirror,
+    nothing,
+    one_mesh,
+    sane,
+    shows,
+    triangles_of,
+    unlit,
+)
 from geometry_scenes import watched
 from glb import Glb
 from shapes import Shape, box, facing_z, grid, joined, sphere
@@ -19,11 +36,15 @@ def scaled_view(scale: float, offset=(0.0, 0.0, 0.0)) -> bytes:
     """A square of 1 m, everything (the camera too) scaled, then moved."""
     glb = Glb()
     offset = np.asarray(offset, float)
-    mesh = glb.mesh(glb.primitive(Shape(facing_z(1, 1).positions * scale, facing_z(1, 1).triangles), glb.unlit("w", WHITE)))
+    mesh = glb.mesh(
+        glb.primitive(Shape(facing_z(1, 1).positions * scale, facing_z(1, 1).triangles), glb.unlit("w", WHITE))
+    )
     eye = offset + np.array((0, 0, 5)) * scale
     lens = glb.orthographic("camera", 2 * scale, scale, near=0.01 * scale, far=100 * scale)
-    nodes = [{"name": "square", "mesh": mesh, "translation": offset.tolist()},
-             {"name": "camera", "camera": lens, "translation": eye.tolist()}]
+    nodes = [
+        {"name": "square", "mesh": mesh, "translation": offset.tolist()},
+        {"name": "camera", "camera": lens, "translation": eye.tolist()},
+    ]
     glb.scene([glb.add("nodes", node) for node in nodes], "scaled")  # unrounded, as 1e-6 must stay what it is
     return glb.bytes()
 
@@ -33,10 +54,18 @@ def tilted_at(scale: float) -> bytes:
     glb = Glb()
     shape = grid((-2.25, -1.25, -2.25), (4.5, 0, 4.5), (0, 2.5, 0))
     mesh = glb.mesh(glb.primitive(Shape(shape.positions * scale, shape.triangles), matte()(glb)))
-    lens = glb.add("cameras", {"type": "orthographic", "orthographic": {
-        "xmag": 2 * scale, "ymag": scale, "znear": 0.01 * scale, "zfar": 100 * scale}})
-    nodes = [glb.add("nodes", {"mesh": mesh}), glb.add("nodes", {"camera": lens, "translation": [0, 0, 5 * scale]}),
-             glb.light("sun", "directional", math.pi)]
+    lens = glb.add(
+        "cameras",
+        {
+            "type": "orthographic",
+            "orthographic": {"xmag": 2 * scale, "ymag": scale, "znear": 0.01 * scale, "zfar": 100 * scale},
+        },
+    )
+    nodes = [
+        glb.add("nodes", {"mesh": mesh}),
+        glb.add("nodes", {"camera": lens, "translation": [0, 0, 5 * scale]}),
+        glb.light("sun", "directional", math.pi),
+    ]
     glb.scene(nodes, "tilted")
     return glb.bytes()
 
@@ -63,8 +92,10 @@ def identical(count: int) -> bytes:
 def coincident_vertices(count: int) -> bytes:
     """`count` vertices in one point, stored by an accessor without a view (all zero), and one honest square behind."""
     glb = Glb()
-    zeros = glb.add("accessors", {"componentType": 5126, "count": count - count % 3, "type": "VEC3", "min": [0, 0, 0],
-                                  "max": [0, 0, 0]})
+    zeros = glb.add(
+        "accessors",
+        {"componentType": 5126, "count": count - count % 3, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]},
+    )
     material = glb.unlit("white", WHITE)
     dust = {"attributes": {"POSITION": zeros}, "material": material}
     square = glb.primitive(facing_z(1, 1, -1), material)
@@ -128,9 +159,14 @@ def through_vertices(diagonal: bool) -> bytes:
 
 def edge_on() -> bytes:
     """Planes that contain the rays (x = 1/16, and y = 1/16 seen from the end) before a square."""
-    side = triangles_of([(0.0625, -1, 1), (0.0625, 1, 1), (0.0625, 0, -0.5), (-1, 0.0625, 1), (1, 0.0625, 1), (0, 0.0625, 0)])
+    side = triangles_of(
+        [(0.0625, -1, 1), (0.0625, 1, 1), (0.0625, 0, -0.5), (-1, 0.0625, 1), (1, 0.0625, 1), (0, 0.0625, 0)]
+    )
     glb = Glb()
-    primitives = [glb.primitive(side, glb.unlit("red", RED)), glb.primitive(facing_z(4, 2, -1), glb.unlit("white", WHITE))]
+    primitives = [
+        glb.primitive(side, glb.unlit("red", RED)),
+        glb.primitive(facing_z(4, 2, -1), glb.unlit("white", WHITE)),
+    ]
     return watched(glb, [glb.node("edge", mesh=glb.mesh(primitives))])
 
 
@@ -144,14 +180,17 @@ def inside_a_sphere() -> bytes:
 
 
 def voxel_mirror() -> bytes:
-    """A mirror on whole multiples of a pixel: reflected rays start exactly on the borders of any grid over it, in one plane."""
+    """A mirror on whole multiples of a pixel: reflected rays start in one plane, exactly on borders of any grid."""
     return one_mesh(facing_z(5, 3, cells=(40, 24)).moved((0.0625, 0.0625, 0)), mirror((0.5, 0.5, 0.5)), NO_LIGHT)
 
 
 def touching_boxes() -> bytes:
     """Boxes that share faces, corners on the rays' grid: boxes of the hierarchy touch exactly where rays run."""
-    boxes = [box((0.5, 0.5, 0.5), (x + 0.0625, y + 0.0625, -0.25 * ((i + j) % 3)))
-             for i, x in enumerate(np.arange(-2.25, 2.5, 0.5)) for j, y in enumerate(np.arange(-1.25, 1.5, 0.5))]
+    boxes = [
+        box((0.5, 0.5, 0.5), (x + 0.0625, y + 0.0625, -0.25 * ((i + j) % 3)))
+        for i, x in enumerate(np.arange(-2.25, 2.5, 0.5))
+        for j, y in enumerate(np.arange(-1.25, 1.5, 0.5))
+    ]
     shape = joined(boxes)
     return one_mesh(Shape(shape.positions, shape.triangles), unlit())
 
@@ -185,20 +224,26 @@ def deep_nodes(depth: int) -> bytes:
 SQUARE = shows(WHITE, HALF_SQUARE)
 TILTED = everywhere((0.5**0.5,) * 3, relative=2e-3)
 CASES = {
-    "scale 1e-6": Case(lambda: scaled_view(1e-6), SQUARE), "scale 1e6": Case(lambda: scaled_view(1e6), SQUARE),
-    "scale 1e-12": Case(lambda: scaled_view(1e-12), SQUARE), "scale 1e12": Case(lambda: scaled_view(1e12), SQUARE),
+    "scale 1e-6": Case(lambda: scaled_view(1e-6), SQUARE),
+    "scale 1e6": Case(lambda: scaled_view(1e6), SQUARE),
+    "scale 1e-12": Case(lambda: scaled_view(1e-12), SQUARE),
+    "scale 1e12": Case(lambda: scaled_view(1e12), SQUARE),
     "1e7 from the origin": Case(lambda: scaled_view(1, (1e7, -1e7, 1e7)), SQUARE),
     "1e12 from the origin": Case(lambda: scaled_view(1, (1e12, -1e12, 1e12)), SQUARE),
     "a millimetre at 1e7": Case(lambda: scaled_view(1e-3, (1e7, -1e7, 1e7)), SQUARE),
-    "tilted, scale 1e-6": Case(lambda: tilted_at(1e-6), TILTED), "tilted, scale 1e6": Case(lambda: tilted_at(1e6), TILTED),
-    "tilted, scale 1e-12": Case(lambda: tilted_at(1e-12), TILTED), "tilted, scale 1e12": Case(lambda: tilted_at(1e12), TILTED),
-    "sliver 1e6:1": Case(lambda: vertical_sliver(1.5e-6, 0.0625), shows(WHITE, lambda x, y: (x == 0.0625) & (abs(y) < 0.75)),
-                          TRACED),
+    "tilted, scale 1e-6": Case(lambda: tilted_at(1e-6), TILTED),
+    "tilted, scale 1e6": Case(lambda: tilted_at(1e6), TILTED),
+    "tilted, scale 1e-12": Case(lambda: tilted_at(1e-12), TILTED),
+    "tilted, scale 1e12": Case(lambda: tilted_at(1e12), TILTED),
+    "sliver 1e6:1": Case(
+        lambda: vertical_sliver(1.5e-6, 0.0625), shows(WHITE, lambda x, y: (x == 0.0625) & (abs(y) < 0.75)), TRACED
+    ),
     "sliver 1e9:1": Case(lambda: vertical_sliver(1.5e-9, 0.0625), sane),
     "no area": Case(without_area, nothing),
     "a million identical": Case(lambda: identical(1_000_000), everywhere(RED), size="8x4"),
-    "ten million coincident vertices": Case(lambda: coincident_vertices(10_000_000), SQUARE, size="8x4",
-                                            refused={"rayquery": 5}),  # a structure larger than the device's buffers
+    "ten million coincident vertices": Case(
+        lambda: coincident_vertices(10_000_000), SQUARE, size="8x4", refused={"rayquery": 5}
+    ),  # a structure larger than the device's buffers
     "size ratio 1e6": Case(size_ratio, check_size_ratio, TRACED),
     "coplanar, seen straight on": Case(lambda: coplanar(False), shows(RED, HALF_SQUARE)),
     "coplanar, seen at an angle": Case(lambda: coplanar(True), either_of_two),

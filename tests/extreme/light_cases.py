@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from case import BLUE, TRACED, WHITE, Case, everywhere, lamp, matte, one_mesh
 from geometry_scenes import watched
 from glb import Glb
@@ -21,6 +22,7 @@ def plane(*lights) -> bytes:
 
 def lit_from(height: float, intensity: float):
     """A point light `height` above the middle: I·h / (π (h² + r²)^1.5)."""
+
     def check(picture) -> None:
         rows, columns = picture.alpha.shape
         x, y = pixels(columns, rows, 2, 1)
@@ -39,7 +41,7 @@ def spot_to_a_right_angle(picture) -> None:
 
 
 def a_hair_above(picture) -> None:
-    """10⁻⁶ m above the middle of one pixel: that one is lit (the point is only known to 10⁻⁸ m), and no other to speak of."""
+    """10⁻⁶ m above the middle of one pixel: that one is lit (the point is only known to 10⁻⁸ m), and hardly another."""
     rows, columns = np.mgrid[:16, :32]
     there = (rows == 7) & (columns == 16)
     close(picture.rgb[there], 1, relative=0.1)
@@ -50,8 +52,10 @@ def light_in_a_box() -> bytes:
     """A closed box round the light, before a plane: outside there is no light."""
     glb = Glb()
     shape = box((1, 1, 1), (0, 0, 1))
-    primitives = [glb.primitive(Shape(shape.positions, shape.triangles), matte()(glb)),
-                  glb.primitive(facing_z(4.5, 2.5), matte(BLUE)(glb))]
+    primitives = [
+        glb.primitive(Shape(shape.positions, shape.triangles), matte()(glb)),
+        glb.primitive(facing_z(4.5, 2.5), matte(BLUE)(glb)),
+    ]
     return watched(glb, [glb.node("box", mesh=glb.mesh(primitives)), lamp(100, (0, 0, 1))(glb)])
 
 
@@ -66,8 +70,13 @@ def sun(direction_turn) -> object:
 
 
 def spot(glb: Glb) -> int:
-    return glb.light("spot", "spot", math.pi, placed={"translation": (0, 0, 2), "rotation": look_at((0, 0, 2), (0, 0, 0))},
-                     spot={"innerConeAngle": 0, "outerConeAngle": math.pi / 2})
+    return glb.light(
+        "spot",
+        "spot",
+        math.pi,
+        placed={"translation": (0, 0, 2), "rotation": look_at((0, 0, 2), (0, 0, 0))},
+        spot={"innerConeAngle": 0, "outerConeAngle": math.pi / 2},
+    )
 
 
 def short_range(glb: Glb) -> int:
@@ -76,12 +85,21 @@ def short_range(glb: Glb) -> int:
 
 CASES = {
     "light at the camera": Case(lambda: plane(lamp(25 * math.pi, (0, 0, 5))), lit_from(5, 25 * math.pi)),
-    "lights that give nothing": Case(lambda: plane(
-        lamp(100, (0.0625, 0.0625, 0)), lamp(math.pi * 1e-12, (0.0625, 0.0625, -1e-6)),  # on the surface; a hair below it
-        lamp(0, (0, 0, 2)), short_range, sun(turn((0, 1, 0), 90))), DARK),  # no intensity, no range, along the surface
+    "lights that give nothing": Case(
+        lambda: plane(
+            lamp(100, (0.0625, 0.0625, 0)),
+            lamp(math.pi * 1e-12, (0.0625, 0.0625, -1e-6)),  # on the surface; a hair below it
+            lamp(0, (0, 0, 2)),
+            short_range,
+            sun(turn((0, 1, 0), 90)),
+        ),
+        DARK,
+    ),  # no intensity, no range, along the surface
     "light 1e-6 above": Case(lambda: plane(lamp(math.pi * 1e-12, (0.0625, 0.0625, 1e-6))), a_hair_above, TRACED),
     "light inside an object": Case(light_in_a_box, DARK),
-    "sixty-four lights in one place": Case(lambda: plane(*[lamp(25 * math.pi / 64, (0, 0, 5))] * 64), lit_from(5, 25 * math.pi)),
+    "sixty-four lights in one place": Case(
+        lambda: plane(*[lamp(25 * math.pi / 64, (0, 0, 5))] * 64), lit_from(5, 25 * math.pi)
+    ),
     "light 1e7 away": Case(lambda: plane(lamp(math.pi * 1e14, (0, 0, 1e7))), everywhere(WHITE, relative=2e-3)),
     "cone of a right angle": Case(lambda: plane(spot), spot_to_a_right_angle),
     "intensity 1e30": Case(lambda: plane(lamp(1e30, (0, 0, 2))), too_bright),

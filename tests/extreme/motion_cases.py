@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from case import WHITE, Case, nothing, shows
 from geometry_scenes import watched
 from glb import Glb
@@ -32,10 +33,15 @@ def turned() -> bytes:
     shape = facing_z(0.5, 0.5)
     mesh = glb.mesh(glb.primitive(shape, glb.unlit("white", WHITE)))
     nodes = [glb.node(f"square {x}", (x, 0, 0), mesh=mesh) for x in (-1, 0, 1)]
-    keys = {"antipodal": [(0, 0, 0, 1), (0, 0, 0, -1)],  # one rotation, so none in between
-            "half a turn": [(0, 0, 0, 1), (0, 0, 1, 0)],  # a quarter in between, either way
-            "length 5 and 1e-3": [(0, 0, 0, 5), (0, 0, 0, 1e-3)]}
-    glb.animation("turn", [(node, "rotation", [0, 1], values, "LINEAR") for node, values in zip(nodes, keys.values())])
+    keys = {
+        "antipodal": [(0, 0, 0, 1), (0, 0, 0, -1)],  # one rotation, so none in between
+        "half a turn": [(0, 0, 0, 1), (0, 0, 1, 0)],  # a quarter in between, either way
+        "length 5 and 1e-3": [(0, 0, 0, 5), (0, 0, 0, 1e-3)],
+    }
+    glb.animation(
+        "turn",
+        [(node, "rotation", [0, 1], values, "LINEAR") for node, values in zip(nodes, keys.values(), strict=True)],
+    )
     return watched(glb, nodes)
 
 
@@ -43,13 +49,21 @@ JUMP = ("translation", [0, 0.5, 0.5 + 1e-7, 1], [(-1, 0, 0), (-1, 0, 0), (1, 0, 
 ZERO = [(0, 0, 0), (0, 0, 0)]
 THREE = shows(WHITE, lambda x, y: (abs(abs((abs(x) + 0.5) % 1 - 0.5)) < 0.25) & (abs(y) < 0.25) & (abs(x) < 1.25))
 CASES = {
-    "keys 1e-7 apart, before and long after": Case(lambda: moved(JUMP), {
-        12: square_at(-1), 13: square_at(1), -5: square_at(-1), 2_000_000_000: square_at(1)}),
-    "a single key": Case(lambda: moved(("translation", [0.25], [(0.5, 0.25, 0)], "LINEAR")),
-                         {0: square_at(0.5, 0.25), 12: square_at(0.5, 0.25)}),
+    "keys 1e-7 apart, before and long after": Case(
+        lambda: moved(JUMP), {12: square_at(-1), 13: square_at(1), -5: square_at(-1), 2_000_000_000: square_at(1)}
+    ),
+    "a single key": Case(
+        lambda: moved(("translation", [0.25], [(0.5, 0.25, 0)], "LINEAR")),
+        {0: square_at(0.5, 0.25), 12: square_at(0.5, 0.25)},
+    ),
     "quaternions antipodal, opposite, not of length 1": Case(turned, {12: THREE}),
-    "a spline that overshoots": Case(lambda: moved(spline([0, 1], ZERO, [(0, 0, 0), (-8, 0, 0)], [(8, 0, 0), (0, 0, 0)])),
-                                     {0: square_at(0), 12: square_at(2)}),
-    "scale through zero": Case(lambda: moved(("scale", [0, 1], [(1, 1, 1), (-1, -1, -1)], "LINEAR")),
-                               {12: nothing, 24: square_at(0)}, ("--back-faces", "show")),  # a mirror turns its front away
+    "a spline that overshoots": Case(
+        lambda: moved(spline([0, 1], ZERO, [(0, 0, 0), (-8, 0, 0)], [(8, 0, 0), (0, 0, 0)])),
+        {0: square_at(0), 12: square_at(2)},
+    ),
+    "scale through zero": Case(
+        lambda: moved(("scale", [0, 1], [(1, 1, 1), (-1, -1, -1)], "LINEAR")),
+        {12: nothing, 24: square_at(0)},
+        ("--back-faces", "show"),
+    ),  # a mirror turns its front away
 }

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
+
 import camera_cases
 import geometry_cases
 import light_cases
 import motion_cases
-import numpy as np
 import optics_cases
-import pytest
 from case import sane
 
 GROUPS = (geometry_cases, optics_cases, light_cases, camera_cases, motion_cases)
@@ -31,15 +32,25 @@ def test_known_answer(sheaf, device_strategies, tmp_path, name):
     options = ["--frames=" + ",".join(map(str, case.checks)), *case.options]
     names = [*device_strategies, "reference"]
     codes = {strategy: (0, case.refused[strategy]) if strategy in case.refused else 0 for strategy in names}
-    runs = sheaf.all({"scene": scene, "options": options, "strategy": strategy, "size": case.size, "code": codes[strategy],
-                      "env": {"LP_NUM_THREADS": "1", "SHEAF_VALIDATION": str(int(strategy in VALIDATED))}}
-                     for strategy in names)
+    runs = sheaf.all(
+        {
+            "scene": scene,
+            "options": options,
+            "strategy": strategy,
+            "size": case.size,
+            "code": codes[strategy],
+            "env": {"LP_NUM_THREADS": "1", "SHEAF_VALIDATION": str(int(strategy in VALIDATED))},
+        }
+        for strategy in names
+    )
     for frame, check in case.checks.items():
-        pictures = {strategy: run.frame(frame) for strategy, run in zip(names, runs) if run.code == 0}
+        pictures = {strategy: run.frame(frame) for strategy, run in zip(names, runs, strict=True) if run.code == 0}
         for strategy, picture in pictures.items():
             sane(picture)
             if strategy != "reference":
                 differs = (picture.rgba.view(np.uint16) != pictures["bvh"].rgba.view(np.uint16)).any(-1)
-                assert not differs.any(), f"{strategy} is not bvh in {differs.sum()} pixels, first {np.argwhere(differs)[0]}"
+                assert not differs.any(), (
+                    f"{strategy} is not bvh in {differs.sum()} pixels, first {np.argwhere(differs)[0]}"
+                )
         check(pictures["bvh"])
         check(pictures["reference"])

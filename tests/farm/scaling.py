@@ -22,6 +22,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from distributed import Client, LocalCluster
+
 from sheaf import farm
 
 # Moves in each of its 96 frames: the engine renders one that equals the last only once.
@@ -69,14 +70,8 @@ def cluster(workers: int, folder: str) -> Iterator[Client]:
 
 def measure(given: argparse.Namespace, workers: int, program: str, folder: str) -> Row:
     frames = given.frames * (workers if given.pace else 1)
-    options = farm.FarmOptions(
-        largest_chunk=1 if given.pace else 1000, chunk_seconds=given.chunk_seconds
-    )
-    settings = (
-        {}
-        if given.pace
-        else {"size": given.size, "strategy": given.strategy, "spp": given.spp}
-    )
+    options = farm.FarmOptions(largest_chunk=1 if given.pace else 1000, chunk_seconds=given.chunk_seconds)
+    settings = {} if given.pace else {"size": given.size, "strategy": given.strategy, "spp": given.spp}
     with cluster(workers, folder) as client:
         for step in (
             (0, workers),
@@ -98,9 +93,7 @@ def measure(given: argparse.Namespace, workers: int, program: str, folder: str) 
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sheaf", type=pathlib.Path, help="the engine")
     parser.add_argument(
         "--pace",
@@ -126,16 +119,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="sheaf-scaling-") as folder:
         program = str(given.sheaf.resolve()) if given.sheaf else f"{folder}/sheaf"
         if not given.sheaf:
-            pathlib.Path(program).write_text(
-                WAITING.format(
-                    python=sys.executable, pace=given.pace, bytes=given.bytes
-                )
-            )
-            os.chmod(program, 0o755)
+            pathlib.Path(program).write_text(WAITING.format(python=sys.executable, pace=given.pace, bytes=given.bytes))
+            program.chmod(0o755)
         first: Row | None = None
-        print(
-            "| workers | frames | seconds | frames a second | of one worker's, times | ms a frame |"
-        )
+        print("| workers | frames | seconds | frames a second | of one worker's, times | ms a frame |")
         print("| --- | --- | --- | --- | --- | --- |")
         for workers in map(int, given.workers.split(",")):
             row = measure(given, workers, program, folder)

@@ -79,7 +79,7 @@ def node(folder: pathlib.Path) -> Iterator[dict[str, str]]:
             started.append(subprocess.Popen(command, env=environment, stdout=log, stderr=log))
             log.close()
             if command[0] == "munged":
-                wait_for(lambda: (folder / "munge.socket").exists(), "munge")
+                wait_for((folder / "munge.socket").exists, "munge")
         wait_for(lambda: "idle" in said(["sinfo", "-h", "-o", "%t"], environment), "the node")
         yield environment
     finally:
@@ -95,7 +95,7 @@ def free_port() -> int:
 
 
 def said(command: list[str], environment: dict[str, str]) -> str:
-    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60).stdout
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False).stdout
 
 
 def wait_for(is_so, what: str, seconds: float = START_SECONDS) -> None:

@@ -12,6 +12,7 @@ import sys
 from typing import Any, NoReturn
 
 import pytest
+
 import slurm_node
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -80,7 +81,9 @@ def test_open_job_description(sheaf: pathlib.Path, scene: pathlib.Path, tmp_path
     assert "--frames 0-2 " in calls[0]  # the runner makes later chunks larger, where they were quick
     assert 2 <= len(calls) <= 3
     assert all("--resume" in call and "--size=8x4 --spp=2" in call for call in calls)
-    again = subprocess.run([*command, f"-pScene={tmp_path / 'absent.glb'}"], timeout=PATIENCE, cwd=tmp_path)
+    again = subprocess.run(
+        [*command, f"-pScene={tmp_path / 'absent.glb'}"], timeout=PATIENCE, cwd=tmp_path, check=False
+    )
     assert again.returncode != 0
 
 
@@ -147,7 +150,7 @@ def slurm_tools(tmp_path: pathlib.Path) -> dict[str, str]:
 def run_slurm(environment: dict[str, str], task: int, scene: pathlib.Path, out: pathlib.Path, **more: str) -> int:
     own = {"SCENE": str(scene), "OUT": str(out), "LAST": "6", "CHUNK": "3", "SLURM_ARRAY_TASK_ID": str(task), **more}
     script = FARM / "slurm" / "sheaf.sbatch"
-    return subprocess.run(["bash", script], timeout=PATIENCE, env={**environment, **own}).returncode
+    return subprocess.run(["bash", script], timeout=PATIENCE, env={**environment, **own}, check=False).returncode
 
 
 def test_slurm_tasks_cover_all_frames_and_tell_failures_apart(
@@ -175,11 +178,13 @@ def test_a_real_slurm_runs_the_array(sheaf: pathlib.Path, scene: pathlib.Path, t
         exported = ",".join(["ALL", *(f"{name}={value}" for name, value in given.items())])
         command = ["sbatch", "--wait", "--array=0-2", f"--export={exported}", f"--output={tmp_path}/slurm-%a.log"]
         script = str(FARM / "slurm" / "sheaf.sbatch")
-        done = subprocess.run([*command, script], env=environment, cwd=tmp_path, timeout=PATIENCE)
+        done = subprocess.run([*command, script], env=environment, cwd=tmp_path, timeout=PATIENCE, check=False)
         logs = "".join(path.read_text() for path in sorted(tmp_path.glob("slurm-*.log")))
         assert done.returncode == 0, logs
         exported += f",SCENE={tmp_path}/absent.glb"
-        bad = subprocess.run([*command[:2], "--array=0", f"--export={exported}", script], env=environment, cwd=tmp_path)
+        bad = subprocess.run(
+            [*command[:2], "--array=0", f"--export={exported}", script], env=environment, cwd=tmp_path, check=False
+        )
         assert bad.returncode == 3
     assert frames(out) == [f"box.{number:04d}.exr" for number in range(7)]
 

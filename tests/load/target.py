@@ -35,7 +35,7 @@ class Target:
         reads = [word for place in (sys.base_prefix, FAKE.parent) for word in ("--worker-reads", str(place))]
         self._command = [str(sheafd), "--listen", f"127.0.0.1:{self.port}", "--data", str(data), "--sheaf", str(sheaf)]
         self._command += ["--min-free", "0", "--attempts", "1000000", *reads, *options]
-        self._log = open(data.parent / "sheafd.log", "ab")  # noqa: SIM115 - as long as this lives
+        self._log = (data.parent / "sheafd.log").open("ab")
         self.process = self._start()
 
     def _start(self) -> subprocess.Popen[bytes]:

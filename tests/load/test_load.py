@@ -23,4 +23,6 @@ def test_some_clients_for_some_seconds(tmp_path: pathlib.Path) -> None:
     )
     assert ended.returncode == 0, ended.stdout + ended.stderr
     told = json.loads(figures.read_text())
-    assert told["jobs_finished"] > 0 and sum(told["kills"].values()) > 0 and told["status_requests"] > 0
+    assert told["jobs_finished"] > 0
+    assert sum(told["kills"].values()) > 0
+    assert told["status_requests"] > 0

@@ -32,8 +32,14 @@ from oracle import FAILURES, SETTLED, Sums  # noqa: E402
 from soups import SOUPS  # noqa: E402
 
 COMMITTED = ("whitted", "cornell", "still_life", "still_life_far", "nested_glass", "degenerate", "skin8", "mirrors")
-ASSETS = ("Sponza/Sponza.gltf", "Duck/glTF-Binary/Duck.glb", "Fox/Fox.glb", "CesiumMan/CesiumMan.glb",
-          "BoomBoxWithAxes/glTF/BoomBoxWithAxes.gltf", "CornellBox/cornellBox.glb")
+ASSETS = (
+    "Sponza/Sponza.gltf",
+    "Duck/glTF-Binary/Duck.glb",
+    "Fox/Fox.glb",
+    "CesiumMan/CesiumMan.glb",
+    "BoomBoxWithAxes/glTF/BoomBoxWithAxes.gltf",
+    "CornellBox/cornellBox.glb",
+)
 LEAST_SLICE = 2000  # rays; a scene that gives fewer a frame is left after one slice
 
 
@@ -54,7 +60,7 @@ def arguments() -> argparse.Namespace:
 def known_scenes() -> dict[str, pathlib.Path | None]:
     """By name; a soup has no file yet."""
     assets = pathlib.Path(os.environ.get("SHEAF_ASSETS", oracle.ROOT / "../shared/assets")).resolve()
-    found: dict[str, pathlib.Path | None] = {name: None for name in SOUPS}
+    found: dict[str, pathlib.Path | None] = dict.fromkeys(SOUPS)
     found |= {name: HERE.parent / "scenes" / f"{name}.glb" for name in COMMITTED}
     return found | {path.split("/")[0]: assets / path for path in ASSETS if (assets / path).is_file()}
 
@@ -80,9 +86,11 @@ def check_scene(name: str, wanted: float, options: argparse.Namespace, work: pat
         as_it_is = see_through and slice_number % 4 == 3
         strategy = strategies[slice_number % len(strategies)]
         frame = 11 + 89 * slice_number
-        dump = oracle.render_dump(scene, work / "slice", "--camera", camera, "--frames", frame, "--size", options.size,
-                                  "--depth", options.depth, "--cutoff", 0, "--strategy", strategy,
-                                  *([] if as_it_is else ["--opaque"]))
+        dump = oracle.render_dump(
+            scene, work / "slice",
+            "--camera", camera, "--frames", frame, "--size", options.size, "--depth", options.depth,
+            "--cutoff", 0, "--strategy", strategy, *([] if as_it_is else ["--opaque"]),
+        )  # fmt: skip
         if as_it_is:
             oracle.drop_shadows(dump)
         found = oracle.check_dump(dump, int(options.pairs))

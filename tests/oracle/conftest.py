@@ -8,7 +8,7 @@ HERE = pathlib.Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "scenes")]
 sys.dont_write_bytecode = True
 
-from oracle import oracle_program, sheaf_program  # noqa: E402
+from oracle import oracle_program, sheaf_program
 
 
 @pytest.fixture(scope="session", autouse=True)

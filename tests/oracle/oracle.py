@@ -73,9 +73,13 @@ class Sums:
 
 def render_dump(scene: pathlib.Path, out: pathlib.Path, *options: object) -> pathlib.Path:
     """Every ray of a render, in out/dump."""
-    command = [sheaf_program(), "render", scene, "--out", out, "--dump", out / "dump", "--primary", "trace",
-               "--back-faces", "show", *options]
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    command = [
+        sheaf_program(), "render", scene, "--out", out, "--dump", out / "dump", "--primary", "trace",
+        "--back-faces", "show", *options,
+    ]  # fmt: skip
+    done = subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
     if done.returncode:
         raise RuntimeError(f"{' '.join(map(str, command))}\nexit {done.returncode}\n{done.stderr[-2000:]}")
     return out / "dump"
@@ -104,8 +108,13 @@ def drop_shadows(dump: pathlib.Path) -> None:
 
 
 def has_alpha_mask(scene: pathlib.Path) -> bool:
-    done = subprocess.run([str(sheaf_program()), "inspect", str(scene), "--json"], capture_output=True, text=True,
-                          timeout=PATIENCE, check=True)
+    done = subprocess.run(
+        [str(sheaf_program()), "inspect", str(scene), "--json"],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=True,
+    )
     return "alpha mask" in json.loads(done.stdout)["features"]
 
 
@@ -130,8 +139,17 @@ def orbit(scene: pathlib.Path, work: pathlib.Path, seconds: float = 60.0) -> pat
         way = np.array((np.cos(turn), 0.4 * np.sin(3 * turn) + 0.15, np.sin(turn)))
         eye = centre + way / np.linalg.norm(way) * near * radius
         target = centre + 0.4 * extent * np.sin((k % count) * np.array((1.3, 2.1, 3.7)))
-        keys.append({"time": k * seconds / count, "eye": eye.tolist(), "target": target.tolist(), "up": [0, 1, 0],
-                     "fov_degrees": 60, "near": 1e-4 * radius, "far": 20 * radius})
+        keys.append(
+            {
+                "time": k * seconds / count,
+                "eye": eye.tolist(),
+                "target": target.tolist(),
+                "up": [0, 1, 0],
+                "fov_degrees": 60,
+                "near": 1e-4 * radius,
+                "far": 20 * radius,
+            }
+        )
     path = work / "orbit.json"
     path.write_text(json.dumps({"version": 1, "interpolation": "catmull-rom", "loop": True, "keys": keys}))
     return path

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import math
 
-import bench_scenes
 import numpy as np
+
+import bench_scenes
 from glb import Glb
 from shapes import Shape, joined, sphere
 
@@ -15,8 +16,10 @@ def _scene(points: np.ndarray, extent: float, centre=(0.0, 0.0, 0.0)) -> bytes:
     """Triangles (n, 3, 3) around `centre`, which is a node's translation; `extent` is half the width of it all."""
     glb = Glb()
     mirrors = max(1, len(points) // 10)
-    parts = {"mirror": (glb.mirror("mirror", (0.95, 0.95, 0.95)), points[:mirrors]),
-             "matte": (glb.material("matte", (0.6, 0.5, 0.4)), points[mirrors:])}
+    parts = {
+        "mirror": (glb.mirror("mirror", (0.95, 0.95, 0.95)), points[:mirrors]),
+        "matte": (glb.material("matte", (0.6, 0.5, 0.4)), points[mirrors:]),
+    }
     nodes = []
     for name, (material, part) in parts.items():
         if not len(part):
@@ -111,5 +114,10 @@ def spheres() -> bytes:
     return bench_scenes.spheres(count=49, frequency=8)
 
 
-SOUPS = {f.__name__: f for f in (soup, soup_fine, soup_ratio, soup_tiny, soup_huge, soup_far, soup_quantised, needles,
-                                 coincident, lattice, shells, spheres)}
+SOUPS = {
+    f.__name__: f
+    for f in (
+        soup, soup_fine, soup_ratio, soup_tiny, soup_huge, soup_far, soup_quantised, needles, coincident,
+        lattice, shells, spheres,
+    )
+}  # fmt: skip

@@ -8,6 +8,7 @@ import subprocess
 
 import numpy as np
 import pytest
+
 from oracle import check_dump, oracle_program
 
 HIT = np.dtype([("t", "<f4"), ("triangle", "<i4"), ("u", "<f4"), ("v", "<f4")])
@@ -22,7 +23,9 @@ def down(x: float, y: float, tmin: float = 0, tmax: float = np.inf) -> tuple:
     return (x, y, 1, tmin, 0, 0, -1, tmax)
 
 
-def dump(folder: pathlib.Path, rays: list[tuple], hits: list[tuple], kind="reflection", triangles=SQUARES) -> pathlib.Path:
+def dump(
+    folder: pathlib.Path, rays: list[tuple], hits: list[tuple], kind="reflection", triangles=SQUARES
+) -> pathlib.Path:
     folder.mkdir(exist_ok=True)
     np.save(folder / "f0000_triangles.npy", np.array(triangles, "<f4"))
     np.save(folder / "f0000_origin.npy", np.zeros(3))

@@ -20,7 +20,7 @@ import sheaf
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from default_signals import default_signals  # noqa: E402, F401 - a fixture of every test
+from default_signals import default_signals  # noqa: F401 - a fixture of every test
 
 BUILD = pathlib.Path(os.environ.get("SHEAF_BUILD", HERE / "../../build")).resolve()
 SCENES = HERE.parent / "scenes"
@@ -66,7 +66,9 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture
 def guarded(tmp_path: pathlib.Path) -> Iterator[tuple[str, str]]:
     """A service that wants a token, and the token."""
-    made = subprocess.run([BUILD / "sheafd", "--new-token", "visitor=read,submit"], capture_output=True, text=True)
+    made = subprocess.run(
+        [BUILD / "sheafd", "--new-token", "visitor=read,submit"], capture_output=True, text=True, check=False
+    )
     (tmp_path / "tokens").write_text(made.stdout)
     with running(tmp_path / "data", "--token-file", str(tmp_path / "tokens")) as address:
         yield address, made.stderr.split()[-1]

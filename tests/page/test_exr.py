@@ -10,9 +10,9 @@ from collections.abc import Callable
 import numpy as np
 import OpenEXR
 import pytest
-from conftest import PATIENCE_MS, SCENES, playwright
 
 import sheaf
+from conftest import PATIENCE_MS, SCENES, playwright
 
 expect = playwright.expect
 Visit = Callable[..., object]

@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Callable
 
 import pytest
+
 from conftest import BUILD
 
 Visit = Callable[..., object]

@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from conftest import PATIENCE_MS, SCENES, playwright, running
 
 import sheaf
+from conftest import PATIENCE_MS, SCENES, playwright, running
 
 expect = playwright.expect
 Visit = Callable[..., object]
@@ -181,7 +181,8 @@ def test_everything_has_a_name_and_is_reached_by_keyboard(visit: Visit, done: sh
     expect(page.locator("#stats")).to_be_visible()
     nameless = page.evaluate(
         """() => [...document.querySelectorAll("button, input, select")].filter((each) => each.offsetParent &&
-          !(each.labels?.length || each.getAttribute("aria-label") || each.textContent.trim())).map((each) => each.outerHTML)"""
+          !(each.labels?.length || each.getAttribute("aria-label") || each.textContent.trim()))
+          .map((each) => each.outerHTML)"""
     )
     assert nameless == []
     reached = []
@@ -202,7 +203,7 @@ def study(**more: object) -> dict:
             "high": milliseconds,
             "runs": [milliseconds],
         }
-        error = rmse is not None and {"rmse": rmse, "worst": "inf"} or None
+        error = (rmse is not None and {"rmse": rmse, "worst": "inf"}) or None
         pareto = {"time": front, "tests": False}
         return {"label": label, "name": name, "wall_ms": wall, "error": error, "pareto": pareto, "failure": None}
 
@@ -238,7 +239,9 @@ def check_plot(page) -> None:
     assert (x16 - x1) / (x4 - x1) == pytest.approx(np.log(700 / 12) / np.log(40 / 12), rel=1e-3)
     assert (y16 - y1) / (y4 - y1) == pytest.approx(np.log(0.2 / 0.0004) / np.log(0.2 / 0.05), rel=1e-3)
     rows = page.locator("#report-plot tbody tr").all_text_contents()
-    assert len(rows) == 4 and rows[0].startswith("draft: spp 1") and rows[3].endswith("0.00")
+    assert len(rows) == 4
+    assert rows[0].startswith("draft: spp 1")
+    assert rows[3].endswith("0.00")
 
 
 def test_a_report_is_shown_when_it_is_dropped(visit: Visit, tmp_path: pathlib.Path) -> None:

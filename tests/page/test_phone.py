@@ -7,9 +7,9 @@ import re
 from collections.abc import Callable
 
 import pytest
-from conftest import playwright
 
 import sheaf
+from conftest import playwright
 
 expect = playwright.expect
 Visit = Callable[..., object]
@@ -34,7 +34,8 @@ def check_fits(page) -> None:
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     beyond = page.evaluate(
         """() => [...document.querySelectorAll("body *")].filter((each) => each.checkVisibility() &&
-          !each.closest(".wide > *, .skip") && each.getBoundingClientRect().right > innerWidth + 0.5).map((each) => each.outerHTML)"""
+          !each.closest(".wide > *, .skip") && each.getBoundingClientRect().right > innerWidth + 0.5)
+          .map((each) => each.outerHTML)"""
     )
     assert beyond == []
 

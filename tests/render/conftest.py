@@ -8,8 +8,8 @@ HERE = pathlib.Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "scenes"), str(HERE.parent)]
 sys.dont_write_bytecode = True
 
-from default_signals import default_signals  # noqa: E402, F401 - a fixture of every test
-from rendering import Sheaf, program  # noqa: E402
+from default_signals import default_signals  # noqa: F401 - a fixture of every test
+from rendering import Sheaf, program
 
 
 @pytest.fixture(scope="session", autouse=True)

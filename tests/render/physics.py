@@ -85,8 +85,10 @@ def inside(x, y, triangles) -> tuple[np.ndarray, np.ndarray]:
     """Which points lie in any of the flat triangles (n, 3, 2), and for which that is not a matter of rounding."""
     found, sure = np.zeros(np.shape(x), bool), np.ones(np.shape(x), bool)
     for corners in np.asarray(triangles, float)[..., :2]:
-        edges = [((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / max(np.hypot(*(b - a)), 1e-30)
-                 for a, b in zip(corners, np.roll(corners, -1, axis=0))]  # signed distances from the edges' lines
+        edges = [
+            ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / max(np.hypot(*(b - a)), 1e-30)
+            for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+        ]  # signed distances from the edges' lines
         least, most = np.minimum.reduce(edges), np.maximum.reduce(edges)
         within = (least >= 0) | (most <= 0)
         margin = np.maximum(least, -most)
@@ -103,5 +105,6 @@ def box_of(x0: float, x1: float, y0: float, y1: float) -> list:
 
 def close(found, wanted, relative=2 * HALF, absolute=1e-4) -> None:
     """Two half steps and a ten-thousandth, unless told otherwise: rounding in the file and float arithmetic."""
-    np.testing.assert_allclose(np.asarray(found, float), np.broadcast_to(wanted, np.shape(found)), rtol=relative,
-                               atol=absolute)
+    np.testing.assert_allclose(
+        np.asarray(found, float), np.broadcast_to(wanted, np.shape(found)), rtol=relative, atol=absolute
+    )

@@ -112,28 +112,51 @@ class Sheaf:
         self.runs += 1
         return self.folder / f"run{self.runs}"
 
-    def __call__(self, *arguments: object, code: int | Sequence[int] = 0, env: dict[str, str] | None = None,
-                 out: pathlib.Path | None = None) -> Run:
+    def __call__(
+        self,
+        *arguments: object,
+        code: int | Sequence[int] = 0,
+        env: dict[str, str] | None = None,
+        out: pathlib.Path | None = None,
+    ) -> Run:
         """Any command. Fails on another exit code and on any word of the validation layer."""
         environment = {"SHEAF_VALIDATION": "1"} | (env or {})
-        done = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, check=False,
-                              timeout=PATIENCE, env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
+        done = subprocess.run(
+            [program(), *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=PATIENCE,
+            env={**os.environ, **environment},
+            stdin=subprocess.DEVNULL,
+        )
         told = f"{' '.join(map(str, arguments))}\nexit {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
         assert "vulkan validation" not in done.stderr.lower(), told
         assert done.returncode in ((code,) if isinstance(code, int) else code), told
         return Run(done.returncode, done.stdout, done.stderr, out or self.folder)
 
-    def render(self, scene: str | pathlib.Path, *options: object, size: str = "64x36", strategy: str = "bvh",
-               stats: bool = False, out: pathlib.Path | None = None, code: int = 0,
-               env: dict[str, str] | None = None) -> Run:
+    def render(
+        self,
+        scene: str | pathlib.Path,
+        *options: object,
+        size: str = "64x36",
+        strategy: str = "bvh",
+        stats: bool = False,
+        out: pathlib.Path | None = None,
+        code: int = 0,
+        env: dict[str, str] | None = None,
+    ) -> Run:
         """`bvh` unless told otherwise: it has the fewest pipelines, so it is there soonest."""
         out = out or self.new_folder()
         more = ["--stats", out / "stats.json"] if stats else []
-        return self("render", scene_path(scene), "--out", out, "--size", size, "--strategy", strategy, *more, *options,
-                    code=code, env=env, out=out)
+        return self(
+            "render", scene_path(scene), "--out", out, "--size", size, "--strategy", strategy, *more, *options,
+            code=code, env=env, out=out,
+        )  # fmt: skip
 
     def all(self, calls: Iterable[dict]) -> list[Run]:
         """Several renders side by side, each a dict of `scene`, `options` and what render() takes by name."""
+
         def one(call: dict) -> Run:
             call = dict(call)
             return self.render(call.pop("scene"), *call.pop("options", ()), **call)
@@ -145,6 +168,7 @@ class Sheaf:
 
 def half_steps(a: np.ndarray, b: np.ndarray) -> int:
     """Largest difference in steps of half precision, for arrays of halves."""
+
     def ordered(values: np.ndarray) -> np.ndarray:
         bits = values.astype(np.float16).view(np.int16).astype(np.int32)
         return np.where(bits < 0, -(bits & 0x7FFF), bits)

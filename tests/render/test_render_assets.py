@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+
 from rendering import ASSETS
 
 MODELS = sorted(path.relative_to(ASSETS).as_posix() for path in ASSETS.rglob("*") if path.suffix in (".glb", ".gltf"))
@@ -31,8 +32,9 @@ def test_renders_or_is_refused_by_name(sheaf, model):
         assert path.name in run.stderr
         assert any(name in run.stderr for name in cannot)
         return
-    picture = sheaf.render(path, "--frames", 7, size="96x96", env={"SHEAF_VALIDATION": "0" if model in TOO_MANY else "1"}
-                           ).frame()
+    picture = sheaf.render(
+        path, "--frames", 7, size="96x96", env={"SHEAF_VALIDATION": "0" if model in TOO_MANY else "1"}
+    ).frame()
     rgba = picture.rgba.astype(float)
     assert np.isfinite(rgba).all()
     assert ((picture.alpha >= 0) & (picture.alpha <= 1)).all()

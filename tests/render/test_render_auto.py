@@ -13,19 +13,27 @@ DEAR = {"SHEAF_AUTO_PRICE": "1e9"}
 
 def same(a, b):
     return a.channels.keys() == b.channels.keys() and all(
-        np.array_equal(a.channels[c].view(np.uint32), b.channels[c].view(np.uint32)) for c in a.channels)
+        np.array_equal(a.channels[c].view(np.uint32), b.channels[c].view(np.uint32)) for c in a.channels
+    )
 
 
 def both(sheaf, scene, *options, env=None, size="96x54", fixed="bvh"):
     """The run by `auto` and by a fixed strategy."""
-    return sheaf.all({"scene": scene, "options": options, "size": size, "strategy": strategy, "stats": True, "env": env}
-                     for strategy in ("auto", fixed))
+    return sheaf.all(
+        {"scene": scene, "options": options, "size": size, "strategy": strategy, "stats": True, "env": env}
+        for strategy in ("auto", fixed)
+    )
 
 
-@pytest.mark.parametrize(("scene", "options", "size"), [
-    ("cornell", ("--frames", "0"), "96x54"), ("whitted", ("--frames", "0-1"), "320x180"),
-    ("nested_glass", ("--frames", "0", "--spp", "4"), "96x54"), ("whitted", ("--frames", "3"), "640x360"),
-])
+@pytest.mark.parametrize(
+    ("scene", "options", "size"),
+    [
+        ("cornell", ("--frames", "0"), "96x54"),
+        ("whitted", ("--frames", "0-1"), "320x180"),
+        ("nested_glass", ("--frames", "0", "--spp", "4"), "96x54"),
+        ("whitted", ("--frames", "3"), "640x360"),
+    ],
+)
 def test_short_runs_do_what_bvh_does(sheaf, scene, options, size):
     """No pixel twice, no kernel more, no byte more on the device."""
     auto, fixed = both(sheaf, scene, *options, size=size)
@@ -50,9 +58,14 @@ def test_a_sequence_changes_hands_between_frames(sheaf):
     assert "ns a ray" in auto.stats()["chosen_because"]
 
 
-@pytest.mark.parametrize(("options", "size"), [
-    (("--spp", "6"), "96x54"), (("--spp", "1", "--memory", "16"), "320x180"), (("--spp", "adaptive:0.02:64"), "96x54"),
-])
+@pytest.mark.parametrize(
+    ("options", "size"),
+    [
+        (("--spp", "6"), "96x54"),
+        (("--spp", "1", "--memory", "16"), "320x180"),
+        (("--spp", "adaptive:0.02:64"), "96x54"),
+    ],
+)
 def test_a_frame_changes_hands_between_samples_and_tiles(sheaf, options, size):
     auto, fixed = both(sheaf, "whitted", "--frames", "7-8", *options, size=size, env=FREE)
     for a, b in zip(auto.stats()["frames"], fixed.stats()["frames"], strict=True):

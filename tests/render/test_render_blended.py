@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import BLACK, close
 from shapes import facing_z
@@ -33,8 +34,9 @@ def test_layers_use_up_no_depth(sheaf, tmp_path, strategy, depth):
 
 @pytest.mark.parametrize("strategy", ["bvh", "reference"])
 def test_as_many_as_a_ray_may_go_through(sheaf, tmp_path, strategy):
-    run = sheaf.render(layers(tmp_path / "most.glb", MOST, 0.01), "--cutoff", 0, *BLACK, strategy=strategy, size="8x8",
-                       stats=True)
+    run = sheaf.render(
+        layers(tmp_path / "most.glb", MOST, 0.01), "--cutoff", 0, *BLACK, strategy=strategy, size="8x8", stats=True
+    )
     close(run.frame().rgba, (0.99**MOST, 0.99**MOST, 1, 1), absolute=1e-3)
     assert "64 blended" not in run.stderr
     assert run.stats()["frames"][0]["blended_stopped"] == 0
@@ -42,8 +44,9 @@ def test_as_many_as_a_ray_may_go_through(sheaf, tmp_path, strategy):
 
 @pytest.mark.parametrize("strategy", ["bvh", "hybrid", "reference"])
 def test_one_more_is_told_of(sheaf, tmp_path, strategy):
-    run = sheaf.render(layers(tmp_path / "more.glb", MOST + 1, 0.01), "--cutoff", 0, *BLACK, strategy=strategy, size="8x8",
-                       stats=True)
+    run = sheaf.render(
+        layers(tmp_path / "more.glb", MOST + 1, 0.01), "--cutoff", 0, *BLACK, strategy=strategy, size="8x8", stats=True
+    )
     reached = 1 - 0.99 ** (MOST + 1)
     close(run.frame().rgba, (0, 0, reached, reached), absolute=1e-3)
     told = [line for line in run.stderr.splitlines() if "64 blended" in line]
@@ -55,7 +58,9 @@ def test_one_more_is_told_of(sheaf, tmp_path, strategy):
 def test_a_mirror_behind_layers_still_reflects(sheaf, tmp_path):
     """Bounces count as before: behind three layers, a mirror at depth 1 shows what it faces."""
     glb = Glb()
-    layer = glb.mesh(glb.primitive(facing_z(4, 4), glb.unlit("layer", (0, 0, 1, 0.5), alphaMode="BLEND", doubleSided=True)))
+    layer = glb.mesh(
+        glb.primitive(facing_z(4, 4), glb.unlit("layer", (0, 0, 1, 0.5), alphaMode="BLEND", doubleSided=True))
+    )
     nodes = [glb.node(f"layer {k}", (0, 0, 0.1 * k), mesh=layer) for k in range(3)]
     nodes.append(glb.node("mirror", (0, 0, -1), mesh=glb.mesh(glb.primitive(facing_z(4, 4), glb.mirror("mirror")))))
     nodes.append(glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", 1, 1)))

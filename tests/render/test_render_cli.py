@@ -8,14 +8,24 @@ import zlib
 
 import numpy as np
 import pytest
+
 from rendering import SCENES, read_exr
 
 TINY = {"size": "16x9"}
 
 
 # ---- frames and names ----
-@pytest.mark.parametrize(("frames", "wanted"), [("3", [3]), ("2-5", [2, 3, 4, 5]), ("0-9:4", [0, 4, 8]), ("7,1,7", [1, 7]),
-                                                ("1,4-6,10-12:2", [1, 4, 5, 6, 10, 12]), ("-2-1", [-2, -1, 0, 1])])
+@pytest.mark.parametrize(
+    ("frames", "wanted"),
+    [
+        ("3", [3]),
+        ("2-5", [2, 3, 4, 5]),
+        ("0-9:4", [0, 4, 8]),
+        ("7,1,7", [1, 7]),
+        ("1,4-6,10-12:2", [1, 4, 5, 6, 10, 12]),
+        ("-2-1", [-2, -1, 0, 1]),
+    ],
+)
 def test_frame_numbers(sheaf, frames, wanted):
     run = sheaf.render("hierarchy", f"--frames={frames}", **TINY)
     assert sorted(run.files) == wanted
@@ -30,8 +40,9 @@ def test_file_names(sheaf):
 
 def test_negative_numbers_are_padded_as_printf_does(sheaf):
     run = sheaf.render("hierarchy", "--frames=-12--10,-2,3,-12345", "--preview", **TINY)
-    assert {p.name for p in run.out.iterdir()} == {f"hierarchy.{'%04d' % n}.{kind}"
-                                                   for n in (-12, -11, -10, -2, 3, -12345) for kind in ("exr", "png")}
+    assert {p.name for p in run.out.iterdir()} == {
+        f"hierarchy.{n:04d}.{kind}" for n in (-12, -11, -10, -2, 3, -12345) for kind in ("exr", "png")
+    }
 
 
 def test_time_is_frame_by_fps(sheaf):
@@ -75,7 +86,9 @@ def test_preview(sheaf):
     idat, at = b"", 8
     while at < len(data):
         length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
-        assert int.from_bytes(data[at + 8 + length : at + 12 + length], "big") == zlib.crc32(data[at + 4 : at + 8 + length])
+        assert int.from_bytes(data[at + 8 + length : at + 12 + length], "big") == zlib.crc32(
+            data[at + 4 : at + 8 + length]
+        )
         idat += data[at + 8 : at + 8 + length] if kind == b"IDAT" else b""
         at += 12 + length
     assert len(zlib.decompress(idat)) > 16 * 32
@@ -125,7 +138,9 @@ def test_inspect_json(sheaf):
     assert [a["name"] for a in told["animations"]] == ["whitted"]
     assert told["animations"][0]["seconds"] == pytest.approx(4)
     assert {light["kind"] for light in told["lights"]} == {"point", "directional"}
-    assert {"reflective", "transmissive", "volumes", "skins", "morphs", "moving camera", "moving lights"} <= set(told["features"])
+    assert {"reflective", "transmissive", "volumes", "skins", "morphs", "moving camera", "moving lights"} <= set(
+        told["features"]
+    )
     assert re.fullmatch("[0-9a-f]{64}", told["sha256"])
     plain = json.loads(sheaf("inspect", SCENES / "unlit.glb", "--json").stdout)
     left = {item["stage"]: item["reason"] for item in plain["left_out"]}
@@ -160,9 +175,11 @@ def test_devices(sheaf):
 def test_version_and_help(sheaf):
     assert re.match(r"sheaf \d+\.\d+\.\d+\n", sheaf("--version").stdout)
     text = sheaf("render", "--help").stdout
-    for option in ("--camera", "--camera-node", "--frames", "--fps", "--animation", "--size", "--spp", "--depth", "--cutoff",
-                   "--strategy", "--sort", "--primary", "--aov", "--compression", "--name", "--stats", "--dump", "--device",
-                   "--memory", "--progress", "--resume", "--opaque", "--preview"):
+    for option in (
+        "--camera", "--camera-node", "--frames", "--fps", "--animation", "--size", "--spp", "--depth",
+        "--cutoff", "--strategy", "--sort", "--primary", "--aov", "--compression", "--name", "--stats",
+        "--dump", "--device", "--memory", "--progress", "--resume", "--opaque", "--preview",
+    ):  # fmt: skip
         assert option in text
 
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from geometry_scenes import watched
 from glb import Glb
 from physics import box_of, close, reflected
@@ -24,8 +25,12 @@ def write(folder, data: bytes):
 def sloped(glb: Glb, material, normals=False, uvs=None) -> int:
     """A square of 1 m, 2 × 2 cells, whose morph target turns it into the plane z = -y; gives its mesh."""
     shape = facing_z(1, 1, cells=(2, 2))
-    shape = Shape(shape.positions, shape.triangles, shape.normals if normals else None,
-                  None if uvs is None else np.asarray(uvs(shape.positions)))
+    shape = Shape(
+        shape.positions,
+        shape.triangles,
+        shape.normals if normals else None,
+        None if uvs is None else np.asarray(uvs(shape.positions)),
+    )
     item = glb.primitive(shape, material)
     item["targets"] = [{"POSITION": glb.attribute(shape.positions[:, 1:2] * [(0, 0, -1)], bounds=True)}]
     return glb.mesh(item, weights=[0])
@@ -36,7 +41,7 @@ def middle(picture, name, x=0.0):
     values = picture.layer(name)
     height, width = values.shape[:2]
     column = round((x / 2 + 1) / 2 * width)
-    return values[height // 2 - 3:height // 2 + 3, column - 3:column + 3].reshape(-1, values.shape[-1]).mean(0)
+    return values[height // 2 - 3 : height // 2 + 3, column - 3 : column + 3].reshape(-1, values.shape[-1]).mean(0)
 
 
 @pytest.mark.parametrize(("strategy", "instances"), WAYS)
@@ -45,11 +50,16 @@ def test_flat_normals_follow_morphs(sheaf, tmp_path, strategy, instances):
     glb = Glb()
     material = glb.material("white", (1, 1, 1))
     flat, smooth = sloped(glb, material), sloped(glb, material, normals=True)
-    nodes = [glb.node("rest", (-1.2, 0, 0), mesh=flat), glb.node("moving", mesh=flat),
-             glb.node("smooth", (1.2, 0, 0), mesh=smooth, weights=[1])]
+    nodes = [
+        glb.node("rest", (-1.2, 0, 0), mesh=flat),
+        glb.node("moving", mesh=flat),
+        glb.node("smooth", (1.2, 0, 0), mesh=smooth, weights=[1]),
+    ]
     glb.animation("morph", [(nodes[1], "weights", [0, 1], [0, 1], "LINEAR")])
-    run = sheaf.render(write(tmp_path, watched(glb, nodes)), "--instances", instances, "--aov", "N", "--frames", "0,24",
-                       size="96x48", strategy=strategy)
+    run = sheaf.render(
+        write(tmp_path, watched(glb, nodes)),
+        "--instances", instances, "--aov", "N", "--frames", "0,24", size="96x48", strategy=strategy,
+    )  # fmt: skip
     for frame, normal in ((0, (0, 0, 1)), (24, SLOPE)):
         picture = run.frame(frame)
         close(middle(picture, "N", -1.2), (0, 0, 1))
@@ -62,11 +72,15 @@ def test_flat_tangents_follow_morphs(sheaf, tmp_path, strategy, instances):
     """u runs along +y; the normal map says 0.6 of the tangent and 0.8 of the normal everywhere."""
     glb = Glb()
     texture = glb.texture(rgba([[(204, 128, 230, 255)]]))
-    mesh = sloped(glb, glb.material("mapped", (1, 1, 1), normalTexture={"index": texture}),
-                  uvs=lambda p: np.stack([p[:, 1], p[:, 0]], 1))
+    mesh = sloped(
+        glb,
+        glb.material("mapped", (1, 1, 1), normalTexture={"index": texture}),
+        uvs=lambda p: np.stack([p[:, 1], p[:, 0]], 1),
+    )
     nodes = [glb.node("rest", (-1.2, 0, 0), mesh=mesh), glb.node("morphed", mesh=mesh, weights=[1])]
-    picture = sheaf.render(write(tmp_path, watched(glb, nodes)), "--instances", instances, "--aov", "N", size="96x48",
-                           strategy=strategy).frame()
+    picture = sheaf.render(
+        write(tmp_path, watched(glb, nodes)), "--instances", instances, "--aov", "N", size="96x48", strategy=strategy
+    ).frame()
     close(middle(picture, "N", -1.2), (0, 0.6, 0.8), absolute=0.01)
     along, normal = np.array((0, HALF, -HALF)), np.array(SLOPE)
     close(middle(picture, "N"), 0.6 * along + 0.8 * normal, absolute=0.01)
@@ -75,8 +89,12 @@ def test_flat_tangents_follow_morphs(sheaf, tmp_path, strategy, instances):
 def skinned(glb: Glb, shape, joints, material) -> dict:
     """A primitive whose vertices follow one joint each."""
     joints = np.stack([np.asarray(joints)] + [np.zeros(len(shape.positions))] * 3, 1)
-    return glb.primitive(shape, material, JOINTS_0=glb.attribute(joints, "u8"),
-                         WEIGHTS_0=glb.attribute(np.tile((1.0, 0, 0, 0), (len(joints), 1))))
+    return glb.primitive(
+        shape,
+        material,
+        JOINTS_0=glb.attribute(joints, "u8"),
+        WEIGHTS_0=glb.attribute(np.tile((1.0, 0, 0, 0), (len(joints), 1))),
+    )
 
 
 @pytest.mark.parametrize(("strategy", "instances"), WAYS)
@@ -89,15 +107,24 @@ def test_flat_normals_follow_skins(sheaf, tmp_path, strategy, instances):
     mesh = glb.mesh(skinned(glb, shape, shape.positions[:, 1] > 0, glb.material("white", (1, 1, 1))))
     square = glb.node("square", mesh=mesh, skin=glb.skin(joints, [np.eye(4)] * 2))
     glb.animation("lean", [(joints[1], "translation", [0, 1], [(0, 0, 0), (0, 0, -1)], "LINEAR")])
-    run = sheaf.render(write(tmp_path, watched(glb, [*joints, square])), "--instances", instances, "--aov", "N",
-                       "--frames", "0,24", size="96x48", strategy=strategy)
+    run = sheaf.render(
+        write(tmp_path, watched(glb, [*joints, square])),
+        "--instances", instances, "--aov", "N", "--frames", "0,24", size="96x48", strategy=strategy,
+    )  # fmt: skip
     close(middle(run.frame(0), "N"), (0, 0, 1))
     close(middle(run.frame(24), "N"), SLOPE)
 
 
 MIRROR = np.diag([-1.0, 1, 1, 1])
-PLACES = ["joint under the mirror", "joint beside the mirror", "mirroring joint", "both", "joint with a matrix",
-          "mirroring bind matrix", "animated"]
+PLACES = [
+    "joint under the mirror",
+    "joint beside the mirror",
+    "mirroring joint",
+    "both",
+    "joint with a matrix",
+    "mirroring bind matrix",
+    "animated",
+]
 
 
 def lit_square(place: str, normals: bool) -> bytes:
@@ -105,8 +132,11 @@ def lit_square(place: str, normals: bool) -> bytes:
     glb = Glb()
     shape = facing_z(1, 1)
     shape = shape if normals else Shape(shape.positions, shape.triangles)
-    joint = glb.node("joint", **({"scale": (-1, 1, 1)} if place in ("mirroring joint", "both") else {}),
-                     **({"matrix": MIRROR.T.ravel().tolist()} if place == "joint with a matrix" else {}))
+    joint = glb.node(
+        "joint",
+        **({"scale": (-1, 1, 1)} if place in ("mirroring joint", "both") else {}),
+        **({"matrix": MIRROR.T.ravel().tolist()} if place == "joint with a matrix" else {}),
+    )
     mesh = glb.mesh(skinned(glb, shape, np.zeros(4), glb.material("white", (1, 1, 1))))
     bind = MIRROR if place == "mirroring bind matrix" else np.eye(4)
     square = glb.node("square", mesh=mesh, skin=glb.skin([joint], [bind]))
@@ -128,8 +158,10 @@ def test_mirrored_skins_keep_their_outside(sheaf, tmp_path, place, normals):
     facing = (0, 0, 1)
     wanted = reflected((1, 1, 1), facing, facing, facing) * np.pi
     for strategy, instances in WAYS:
-        run = sheaf.render(scene, "--instances", instances, "--aov", "N", "--environment", "0,0,0", "--frames", "0,24",
-                           strategy=strategy)
+        run = sheaf.render(
+            scene, "--instances", instances, "--aov", "N", "--environment", "0,0,0", "--frames", "0,24",
+            strategy=strategy,
+        )  # fmt: skip
         for frame in (0, 24):
             close(middle(run.frame(frame), "N"), facing)
             close(run.frame(frame).rgb[18, 32], wanted)
@@ -139,15 +171,17 @@ def test_skin_of_which_one_joint_mirrors(sheaf, tmp_path):
     """Two squares of one mesh: each triangle has the side of its own joint."""
     glb = Glb()
     left, right = facing_z(1, 1, centre=(-1, 0)), facing_z(1, 1, centre=(-1, 0))
-    shape = Shape(np.concatenate([left.positions, right.positions]),
-                  np.concatenate([left.triangles, right.triangles + 4]))
+    shape = Shape(
+        np.concatenate([left.positions, right.positions]), np.concatenate([left.triangles, right.triangles + 4])
+    )
     joints = [glb.node("plain"), glb.node("mirroring", scale=(-1, 1, 1))]
     mesh = glb.mesh(skinned(glb, shape, [0] * 4 + [1] * 4, glb.material("white", (1, 1, 1))))
     squares = glb.node("squares", mesh=mesh, skin=glb.skin(joints, [np.eye(4)] * 2))
     scene = write(tmp_path, watched(glb, [*joints, squares, glb.light("sun", "directional", np.pi)]))
     for strategy, instances in WAYS:
-        picture = sheaf.render(scene, "--instances", instances, "--aov", "N", "--environment", "0,0,0",
-                               strategy=strategy).frame()
+        picture = sheaf.render(
+            scene, "--instances", instances, "--aov", "N", "--environment", "0,0,0", strategy=strategy
+        ).frame()
         for x in (-1, 1):
             close(middle(picture, "N", x), (0, 0, 1))
         assert (picture.rgb[18, [16, 48]] > 0.9).all()
@@ -165,8 +199,14 @@ def tinted_box(as_skin: bool) -> bytes:
     else:
         inner = [glb.node("box", mesh=glb.mesh(glb.primitive(shape, glass)))]
     wall = glb.node("wall", (0, 0, -2), mesh=glb.mesh(glb.primitive(facing_z(8, 8), glb.material("wall", (1, 1, 1)))))
-    return watched(glb, [glb.node("mirror", scale=(1, 1, -1), children=inner), wall,
-                         glb.light("sun", "directional", 1, placed={"rotation": turn((0, 1, 0), 25)})])
+    return watched(
+        glb,
+        [
+            glb.node("mirror", scale=(1, 1, -1), children=inner),
+            wall,
+            glb.light("sun", "directional", 1, placed={"rotation": turn((0, 1, 0), 25)}),
+        ],
+    )
 
 
 def test_glass_on_a_mirrored_skin(sheaf, tmp_path):
@@ -191,23 +231,30 @@ def square_on_joint(place_joint) -> tuple[Glb, int]:
 @pytest.mark.parametrize("strategy", ["bvh", "reference"])
 def test_joints_outside_the_scene_move(sheaf, tmp_path, strategy):
     """The scene lists the square alone: its joint hangs from a parent that is not in the scene either."""
+
     def hanging(glb):
         joint = glb.node("joint", (0.5, 0, 0))
         parent = glb.node("parent", (0, 0.5, 0), children=[joint])
-        glb.animation("move", [(joint, "translation", [0, 1], [(0.5, 0, 0), (-0.5, 0, 0)], "LINEAR"),
-                               (parent, "translation", [0, 1], [(0, 0.5, 0), (0, -0.25, 0)], "LINEAR")])
+        glb.animation(
+            "move",
+            [
+                (joint, "translation", [0, 1], [(0.5, 0, 0), (-0.5, 0, 0)], "LINEAR"),
+                (parent, "translation", [0, 1], [(0, 0.5, 0), (0, -0.25, 0)], "LINEAR"),
+            ],
+        )
         return joint
 
     glb, square = square_on_joint(hanging)
-    run = sheaf.render(write(tmp_path, watched(glb, [square])), "--frames", "0,12,24", size="96x48", strategy=strategy,
-                       stats=True)
+    run = sheaf.render(
+        write(tmp_path, watched(glb, [square])), "--frames", "0,12,24", size="96x48", strategy=strategy, stats=True
+    )
     for frame, (x, y) in ((0, (0.5, 0.5)), (12, (0, 0.125)), (24, (-0.5, -0.25))):
         check(run.frame(frame), box_of(x - 0.125, x + 0.125, y - 0.125, y + 0.125))
     assert any("nodes[2]: joint 0 of skins[0] is not in the scene" in w for w in run.stats()["scene"]["warnings"])
 
 
 def test_instances_of_a_skinned_node_are_told_of(sheaf, tmp_path):
-    """Its joints say where it is: it is drawn once, which what shines through half of it shows, and a warning names it."""
+    """Its joints say where it is: it is drawn once, as what shines through half of it shows, and a warning names it."""
     glb, square = square_on_joint(lambda glb: glb.node("joint"))
     glb.json["materials"][0] |= {"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}}
     places = {"TRANSLATION": glb.accessor([(-1, 0, 0), (1, 0, 0)])}
@@ -228,15 +275,20 @@ def test_texture_coordinates_and_colours_are_morphed(sheaf, tmp_path, strategy, 
     material = glb.unlit("texels", (1, 1, 1), texture=texture, alphaMode="BLEND")
     shape = facing_z(0.5, 0.5, uv_scale=0.25)
     item = glb.primitive(shape, material, COLOR_0=glb.attribute([(1, 1, 0.5, 1)] * 4))
-    item["targets"] = [{"TEXCOORD_0": glb.attribute([(0.5, 0)] * 4),
-                        "COLOR_0": glb.attribute([(-0.5, -0.5, 1, -0.25)] * 4)},
-                       {"COLOR_0": glb.attribute([(-1, 0, 0)] * 4)}]
+    item["targets"] = [
+        {"TEXCOORD_0": glb.attribute([(0.5, 0)] * 4), "COLOR_0": glb.attribute([(-0.5, -0.5, 1, -0.25)] * 4)},
+        {"COLOR_0": glb.attribute([(-1, 0, 0)] * 4)},
+    ]
     mesh = glb.mesh(item, weights=[0, 0])
-    nodes = [glb.node(str(x), (x, 0, 0), mesh=mesh, weights=weights)
-             for x, weights in ((-1, [0, 0]), (0, [1, 0]), (1, [0, 1]))]
+    nodes = [
+        glb.node(str(x), (x, 0, 0), mesh=mesh, weights=weights)
+        for x, weights in ((-1, [0, 0]), (0, [1, 0]), (1, [0, 1]))
+    ]
     glb.animation("swap", [(nodes[0], "weights", [0, 1], [(0, 0), (1, 0)], "STEP")])
-    run = sheaf.render(write(tmp_path, watched(glb, nodes)), "--instances", instances, "--frames", "0,24", size="96x48",
-                       strategy=strategy, stats=True)
+    run = sheaf.render(
+        write(tmp_path, watched(glb, nodes)),
+        "--instances", instances, "--frames", "0,24", size="96x48", strategy=strategy, stats=True,
+    )  # fmt: skip
     rest, moved = (1, 0, 0.5, 1), (0, 0.5 * 0.75, 0.75, 0.75)
     for frame, first in ((0, rest), (24, moved)):
         found = run.frame(frame).rgba
@@ -261,8 +313,9 @@ def test_deformed_scenes_are_the_same_by_every_strategy(sheaf, tmp_path):
     plain, glass = write(tmp_path, lit_square("both", False)), tmp_path / "glass.glb"
     glass.write_bytes(tinted_box(True))
     for scene in (plain, glass):
-        runs = sheaf.all([{"scene": scene, "strategy": s, "options": ("--aov", "N")}
-                          for s in ("bvh", "hybrid", "crsh", "brute")])
+        runs = sheaf.all(
+            [{"scene": scene, "strategy": s, "options": ("--aov", "N")} for s in ("bvh", "hybrid", "crsh", "brute")]
+        )
         first = runs[0].frame()
         for run in runs[1:]:
             for name, values in run.frame().channels.items():

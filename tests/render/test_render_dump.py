@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from rendering import Run
 
 HIT = np.dtype([("t", "<f4"), ("triangle", "<i4"), ("u", "<f4"), ("v", "<f4")])
@@ -113,11 +114,27 @@ def dumped(sheaf, scene: str, *options: object, **named) -> Run:
     return sheaf.render(scene, "--dump", out / "dump", "--back-faces", "show", *options, out=out, stats=True, **named)
 
 
-@pytest.mark.parametrize(("scene", "strategy", "options"), [
-    ("cornell", "bvh", ("--primary", "trace", "--opaque")), ("cornell", "hybrid", ("--sort", "on",)),
-    ("still_life", "crsh", ("--primary", "trace")), ("nested_glass", "hybrid", ("--primary", "trace", "--depth", 6)),
-    ("still_life_far", "rsh", ()), ("cornell", "frustum", ("--primary", "trace")),
-    ("whitted", "classify", ("--primary", "trace")), ("degenerate", "brute", ("--primary", "trace")), ("interpolation", "bvh", ("--frames", "7"))])
+@pytest.mark.parametrize(
+    ("scene", "strategy", "options"),
+    [
+        ("cornell", "bvh", ("--primary", "trace", "--opaque")),
+        (
+            "cornell",
+            "hybrid",
+            (
+                "--sort",
+                "on",
+            ),
+        ),
+        ("still_life", "crsh", ("--primary", "trace")),
+        ("nested_glass", "hybrid", ("--primary", "trace", "--depth", 6)),
+        ("still_life_far", "rsh", ()),
+        ("cornell", "frustum", ("--primary", "trace")),
+        ("whitted", "classify", ("--primary", "trace")),
+        ("degenerate", "brute", ("--primary", "trace")),
+        ("interpolation", "bvh", ("--frames", "7")),
+    ],
+)
 def test_every_hit_is_right(sheaf, scene, strategy, options):
     frame = 7 if "--frames" in options else 0
     run = dumped(sheaf, scene, *options, strategy=strategy, size="40x22")

@@ -4,6 +4,7 @@
 import json
 
 import pytest
+
 from rendering import SCENES
 
 TINY = {"size": "16x9"}
@@ -51,9 +52,18 @@ def test_wrong_usage_is_2(sheaf, tmp_path, case):
     assert not (tmp_path / "out").exists()
 
 
-BAD_SETTINGS = {"size": ("0x10", "width"), "spp": ("0", "spp"), "depth": ("99999", "depth"), "cutoff": ("2", "cutoff"),
-                "memory": ("1", "memory"), "fps": ("0", "fps"), "environment": ("-1,0,0", "environment"),
-                "animation": ("walk", "walk"), "camera-node": ("nobody", "nobody"), "scene-name": ("nowhere", "nowhere")}
+BAD_SETTINGS = {
+    "size": ("0x10", "width"),
+    "spp": ("0", "spp"),
+    "depth": ("99999", "depth"),
+    "cutoff": ("2", "cutoff"),
+    "memory": ("1", "memory"),
+    "fps": ("0", "fps"),
+    "environment": ("-1,0,0", "environment"),
+    "animation": ("walk", "walk"),
+    "camera-node": ("nobody", "nobody"),
+    "scene-name": ("nowhere", "nowhere"),
+}
 
 
 @pytest.mark.parametrize("option", BAD_SETTINGS)
@@ -79,17 +89,36 @@ BAD_SCENES = {
     "noise": (bytes(range(256)) * 4, ""),
     "cut short": ((SCENES / "whitted.glb").read_bytes()[:5000], ""),
     "version": (glb({"asset": {"version": "3.0"}}), "3.0"),
-    "required": (glb(ASSET | {"extensionsUsed": ["EXT_made_up"], "extensionsRequired": ["EXT_made_up"]}), "EXT_made_up"),
+    "required": (
+        glb(ASSET | {"extensionsUsed": ["EXT_made_up"], "extensionsRequired": ["EXT_made_up"]}),
+        "EXT_made_up",
+    ),
     "mesh index": (glb(ASSET | {"nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}], "scene": 0}), "mesh"),
     "cycle": (glb(ASSET | {"nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]}), "node"),
-    "outside": (glb(ASSET | {
-        "buffers": [{"byteLength": 36, "uri": "../../../etc/hostname"}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-                       "min": [0, 0, 0], "max": [1, 1, 0]}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0,
-    }), "buffer"),
+    "outside": (
+        glb(
+            ASSET
+            | {
+                "buffers": [{"byteLength": 36, "uri": "../../../etc/hostname"}],
+                "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                "accessors": [
+                    {
+                        "bufferView": 0,
+                        "componentType": 5126,
+                        "count": 3,
+                        "type": "VEC3",
+                        "min": [0, 0, 0],
+                        "max": [1, 1, 0],
+                    }
+                ],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                "nodes": [{"mesh": 0}],
+                "scenes": [{"nodes": [0]}],
+                "scene": 0,
+            }
+        ),
+        "buffer",
+    ),
 }
 
 
@@ -108,11 +137,19 @@ def test_bad_scenes_are_3_and_named(sheaf, tmp_path, case):
 BAD_CAMERAS = {
     "not json": ("{", ""),
     "unknown key": ({"version": 1, "keys": [], "colour": 1}, "colour"),
-    "unknown key of a key": ({"version": 1, "keys": [{"time": 0, "eye": [0, 0, 1], "target": [0, 0, 0], "zoom": 2}]}, "zoom"),
+    "unknown key of a key": (
+        {"version": 1, "keys": [{"time": 0, "eye": [0, 0, 1], "target": [0, 0, 0], "zoom": 2}]},
+        "zoom",
+    ),
     "no keys": ({"version": 1, "keys": []}, "keys"),
     "version": ({"version": 2, "keys": []}, "version"),
-    "time backwards": ({"version": 1, "keys": [{"time": t, "position": [0, 0, 1], "rotation": [0, 0, 0, 1], "fov_degrees": 40}
-                                                for t in (1, 0)]}, "time"),
+    "time backwards": (
+        {
+            "version": 1,
+            "keys": [{"time": t, "position": [0, 0, 1], "rotation": [0, 0, 0, 1], "fov_degrees": 40} for t in (1, 0)],
+        },
+        "time",
+    ),
 }
 
 
@@ -129,7 +166,9 @@ def test_bad_camera_paths_are_3_and_named(sheaf, tmp_path, case):
 def test_missing_files_are_named(sheaf, tmp_path):
     run = sheaf("render", tmp_path / "nothing.glb", "--out", tmp_path / "out", code=[3, 6])
     assert "nothing.glb" in one_line(run)
-    run = sheaf("render", SCENES / "unlit.glb", "--out", tmp_path / "out", "--camera", tmp_path / "none.json", code=[3, 6])
+    run = sheaf(
+        "render", SCENES / "unlit.glb", "--out", tmp_path / "out", "--camera", tmp_path / "none.json", code=[3, 6]
+    )
     assert "none.json" in one_line(run)
 
 
@@ -157,8 +196,11 @@ def test_unknown_device_is_4(sheaf):
 
 
 def test_no_driver_at_all_is_4(sheaf, tmp_path):
-    nowhere = {"VK_ICD_FILENAMES": str(tmp_path / "none.json"), "VK_DRIVER_FILES": str(tmp_path / "none.json"),
-               "SHEAF_VALIDATION": "0"}
+    nowhere = {
+        "VK_ICD_FILENAMES": str(tmp_path / "none.json"),
+        "VK_DRIVER_FILES": str(tmp_path / "none.json"),
+        "SHEAF_VALIDATION": "0",
+    }
     for command in (["devices"], ["render", SCENES / "unlit.glb", "--out", tmp_path / "out"]):
         run = sheaf(*command, code=4, env=nowhere)
         assert [line for line in run.stderr.splitlines() if line.startswith("sheaf: ") and "ulkan" in line]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A white furnace: where light of 1 comes from everywhere, a surface that absorbs nothing cannot be told from it. No surface
-returns more than it gets, from its surroundings or from lamps."""
+"""A white furnace: where light of 1 comes from everywhere, a surface that absorbs nothing cannot be told from it. No
+surface returns more than it gets, from its surroundings or from lamps."""
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import BLACK, close, reflected, unit
 from png import rgba
@@ -22,12 +23,19 @@ def glass(glb: Glb, roughness: float, transmission: float, thickness: float, met
 
 
 def shown(sheaf, tmp_path, glb: Glb, nodes, options=FURNACE, strategies=BOTH, extent=1.0, size="24x24") -> list:
-    glb.scene([*nodes, glb.light("none", "directional", 0),
-               glb.node("camera", (0, 0, 9), camera=glb.orthographic("camera", extent, extent))])
+    glb.scene(
+        [
+            *nodes,
+            glb.light("none", "directional", 0),
+            glb.node("camera", (0, 0, 9), camera=glb.orthographic("camera", extent, extent)),
+        ]
+    )
     path = tmp_path / "scene.glb"
     path.write_bytes(glb.bytes())
-    return [run.frame() for run in sheaf.all({"scene": path, "options": options, "strategy": s, "size": size}
-                                             for s in strategies)]
+    return [
+        run.frame()
+        for run in sheaf.all({"scene": path, "options": options, "strategy": s, "size": size} for s in strategies)
+    ]
 
 
 def planes(glb: Glb, materials) -> list:
@@ -61,8 +69,15 @@ def test_thin_glass_at_all_angles(sheaf, tmp_path, ior):
         close(picture.rgb, WHITE, relative=2e-3)
 
 
-@pytest.mark.parametrize("make", [lambda g: g.material("m", WHITE, 0, 1), lambda g: g.material("m", WHITE, 0, 0.2),
-                                  lambda g: g.material("m", WHITE, 0.5, 0.3), lambda g: g.material("m", WHITE, 1, 0)])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda g: g.material("m", WHITE, 0, 1),
+        lambda g: g.material("m", WHITE, 0, 0.2),
+        lambda g: g.material("m", WHITE, 0.5, 0.3),
+        lambda g: g.material("m", WHITE, 1, 0),
+    ],
+)
 def test_the_rim_of_a_white_sphere(sheaf, tmp_path, make):
     glb = Glb()
     nodes = [glb.node("ball", mesh=glb.mesh(glb.primitive(sphere(6), make(glb))))]
@@ -70,12 +85,18 @@ def test_the_rim_of_a_white_sphere(sheaf, tmp_path, make):
         close(picture.rgb[picture.alpha == 1], WHITE)
 
 
-@pytest.mark.parametrize(("roughness", "transmission", "metallic"), [(0, 1, 0), (1, 1, 0), (0.2, 0.5, 0), (1, 0.5, 0.5)])
+@pytest.mark.parametrize(
+    ("roughness", "transmission", "metallic"), [(0, 1, 0), (1, 1, 0), (0.2, 0.5, 0), (1, 0.5, 0.5)]
+)
 def test_glass_balls(sheaf, tmp_path, roughness, transmission, metallic):
-    """Closed glass, from outside and within: what 12 generations leave is a hundredth at most, and never more than all."""
+    """Closed glass, from outside and within: what 12 generations leave is a hundredth at most, never more than all."""
     glb = Glb()
-    nodes = [glb.node("ball", mesh=glb.mesh(glb.primitive(sphere(6), glass(glb, roughness, transmission, 1, metallic))))]
-    for picture in shown(sheaf, tmp_path, glb, nodes, ("--environment", "1,1,1", "--depth", 12, "--cutoff", 1e-3), extent=1.01):
+    nodes = [
+        glb.node("ball", mesh=glb.mesh(glb.primitive(sphere(6), glass(glb, roughness, transmission, 1, metallic))))
+    ]
+    for picture in shown(
+        sheaf, tmp_path, glb, nodes, ("--environment", "1,1,1", "--depth", 12, "--cutoff", 1e-3), extent=1.01
+    ):
         seen = picture.rgb[picture.alpha == 1]
         assert seen.max() <= 1.001
         assert np.median(seen) > 0.99
@@ -97,17 +118,22 @@ def test_blended_occluded_and_bumpy(sheaf, tmp_path):
     tangents = {"TANGENT": glb.attribute(np.tile((1, 0, 0, 1), (len(uv.positions), 1)))}
     steep = {"index": glb.texture(rgba([[(255, 128, 140), (0, 128, 140)]]))}
     dark = {"index": glb.texture(rgba([[(0, 0, 0), (255, 255, 255)]])), "strength": 0.5}
-    kinds = [({}, glb.material("blend", (1, 1, 1, 0.5), 0, 0.2, alphaMode="BLEND")),
-             ({}, glb.material("occluded", WHITE, 0, 1, occlusionTexture=dark)),
-             (tangents, glb.material("bumpy", WHITE, 0, 1, normalTexture=steep)),
-             (tangents, glass(glb, 0.5, 0.5, 0, normalTexture=steep))]
-    nodes = [glb.node("strip", (-0.75 + 0.5 * k, 0, 0), mesh=glb.mesh(glb.primitive(uv, material, **more)))
-             for k, (more, material) in enumerate(kinds)]
+    kinds = [
+        ({}, glb.material("blend", (1, 1, 1, 0.5), 0, 0.2, alphaMode="BLEND")),
+        ({}, glb.material("occluded", WHITE, 0, 1, occlusionTexture=dark)),
+        (tangents, glb.material("bumpy", WHITE, 0, 1, normalTexture=steep)),
+        (tangents, glass(glb, 0.5, 0.5, 0, normalTexture=steep)),
+    ]
+    nodes = [
+        glb.node("strip", (-0.75 + 0.5 * k, 0, 0), mesh=glb.mesh(glb.primitive(uv, material, **more)))
+        for k, (more, material) in enumerate(kinds)
+    ]
     for picture in shown(sheaf, tmp_path, glb, nodes):
-        blend, occluded, *bumpy = (picture.rgb[:, k:k + 6] for k in (0, 6, 12, 18))
+        blend, occluded, *bumpy = (picture.rgb[:, k : k + 6] for k in (0, 6, 12, 18))
         close(blend, 0.5)
         close(picture.alpha[:, :6], 0.5)
-        assert occluded.max() <= 1.001 and 0.4 < occluded.min() < 0.6
+        assert occluded.max() <= 1.001
+        assert 0.4 < occluded.min() < 0.6
         close(np.array(bumpy), WHITE, relative=2e-3)
 
 
@@ -116,7 +142,9 @@ def test_a_tinted_surface_returns_its_share(sheaf, tmp_path):
     base, angle = np.array((0.5, 0.25, 1)), 60
     glb = Glb()
     wide = facing_z(8, 2)
-    nodes = [glb.node("plane", None, turn((0, 1, 0), angle), mesh=glb.mesh(glb.primitive(wide, glb.material("m", base))))]
+    nodes = [
+        glb.node("plane", None, turn((0, 1, 0), angle), mesh=glb.mesh(glb.primitive(wide, glb.material("m", base))))
+    ]
     f = 0.04 + 0.96 * 0.5**5
     for picture in shown(sheaf, tmp_path, glb, nodes):
         close(picture.rgb, f + (1 - f) * base)
@@ -135,11 +163,23 @@ def test_lamps_on_all_sides_give_no_more_than_a_furnace(sheaf, tmp_path, roughne
     tilt = np.radians(angle)
     into_view = np.array([(np.cos(tilt), 0, np.sin(tilt)), (0, 1, 0), (-np.sin(tilt), 0, np.cos(tilt))])
     glb = Glb()
-    nodes = [glb.node("plane", None, turn((0, 1, 0), angle), mesh=glb.mesh(glb.primitive(
-        facing_z(80, 4), glb.material("white", WHITE, 0, roughness))))]
+    nodes = [
+        glb.node(
+            "plane",
+            None,
+            turn((0, 1, 0), angle),
+            mesh=glb.mesh(glb.primitive(facing_z(80, 4), glb.material("white", WHITE, 0, roughness))),
+        )
+    ]
     for way in towards:
-        nodes.append(glb.light("lamp", "directional", np.pi / len(towards) / way[2], placed={
-            "rotation": look_at(into_view @ way, (0, 0, 0))}))
+        nodes.append(
+            glb.light(
+                "lamp",
+                "directional",
+                np.pi / len(towards) / way[2],
+                placed={"rotation": look_at(into_view @ way, (0, 0, 0))},
+            )
+        )
     for picture in shown(sheaf, tmp_path, glb, nodes, BLACK, size="4x4"):
         assert 0.3 < picture.rgb.max() <= 1.01
 
@@ -160,11 +200,17 @@ def test_the_stated_bound_of_what_lamps_give(roughness, ior):
             return np.stack(np.broadcast_arrays(s * np.cos(phi), s * np.sin(phi), c), -1)
 
         cosine = ways(np.sqrt(u))
-        base = (reflected(1, z, v, cosine, 0, roughness, ior)[..., 0] - reflected(0, z, v, cosine, 0, roughness, ior)[..., 0])
+        base = (
+            reflected(1, z, v, cosine, 0, roughness, ior)[..., 0]
+            - reflected(0, z, v, cosine, 0, roughness, ior)[..., 0]
+        )
         diffuse = np.mean(base / cosine[..., 2] * np.pi)
         h = ways(np.sqrt((1 - u) / (1 + (a2 - 1) * u)))
         mirrored = unit(2 * (h @ v)[..., None] * h - v)
         density = a2 / (np.pi * (h[..., 2] ** 2 * (a2 - 1) + 1) ** 2) * h[..., 2] / (4 * np.maximum(h @ v, 1e-9))
-        gloss = np.where((mirrored[..., 2] > 1e-6) & (h @ v > 0),
-                         reflected(0, z, v, mirrored, 0, roughness, ior)[..., 0] / density, 0)
+        gloss = np.where(
+            (mirrored[..., 2] > 1e-6) & (h @ v > 0),
+            reflected(0, z, v, mirrored, 0, roughness, ior)[..., 0] / density,
+            0,
+        )
         assert diffuse + gloss.mean() <= 1.005, (nv, diffuse, gloss.mean())

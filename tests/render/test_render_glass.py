@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""--glass-alpha: whether the background shows through what lets light through; and what is said of glass that is rough."""
-
+"""--glass-alpha: whether the background shows through what lets light through; and what is said of rough glass."""
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import BLACK, close
 from shapes import box, facing_z
@@ -14,12 +14,19 @@ THROUGH = ("--glass-alpha", "transparent", "--cutoff", 0, *BLACK)
 
 
 def rendered(sheaf, tmp_path, glb: Glb, nodes, *options) -> list:
-    glb.scene([*nodes, glb.light("none", "directional", 0),
-               glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", 0.25, 0.25))])
+    glb.scene(
+        [
+            *nodes,
+            glb.light("none", "directional", 0),
+            glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", 0.25, 0.25)),
+        ]
+    )
     path = tmp_path / "scene.glb"
     path.write_bytes(glb.bytes())
-    return [run.frame() for run in sheaf.all({"scene": path, "options": options, "strategy": s, "size": "8x8"}
-                                             for s in BOTH)]
+    return [
+        run.frame()
+        for run in sheaf.all({"scene": path, "options": options, "strategy": s, "size": "8x8"} for s in BOTH)
+    ]
 
 
 def pane(glb: Glb, base=(1, 1, 1), **more) -> int:
@@ -41,16 +48,19 @@ def test_by_default_glass_covers(sheaf, tmp_path):
         assert '"glass-alpha":"opaque"' in str(picture.header)
 
 
-@pytest.mark.parametrize(("make", "options", "alpha"), [
-    (lambda g: [pane(g)], (), 1 - LOSS),
-    (lambda g: [pane(g, (0.5, 1, 0.25))], (), 1 - LOSS * 1.75 / 3),
-    (lambda g: [pane(g), pane(g, translation=(0, 0, 1))], ("--depth", 2), 1 - LOSS**2),
-    (lambda g: [slab(g)], ("--depth", 2), 1 - LOSS**2),
-    (lambda g: [slab(g, colour=(0.5, 0.25, 0.75), distance=1)], ("--depth", 2), 1 - LOSS**2 * 0.5),
-    (lambda g: [pane(g), wall(g)], (), 1),
-    (lambda g: [pane(g)], ("--depth", 0), 1),
-    (lambda g: [slab(g)], ("--depth", 1), 1),
-])
+@pytest.mark.parametrize(
+    ("make", "options", "alpha"),
+    [
+        (lambda g: [pane(g)], (), 1 - LOSS),
+        (lambda g: [pane(g, (0.5, 1, 0.25))], (), 1 - LOSS * 1.75 / 3),
+        (lambda g: [pane(g), pane(g, translation=(0, 0, 1))], ("--depth", 2), 1 - LOSS**2),
+        (lambda g: [slab(g)], ("--depth", 2), 1 - LOSS**2),
+        (lambda g: [slab(g, colour=(0.5, 0.25, 0.75), distance=1)], ("--depth", 2), 1 - LOSS**2 * 0.5),
+        (lambda g: [pane(g), wall(g)], (), 1),
+        (lambda g: [pane(g)], ("--depth", 0), 1),
+        (lambda g: [slab(g)], ("--depth", 1), 1),
+    ],
+)
 def test_transparent_glass_covers_what_it_holds_back(sheaf, tmp_path, make, options, alpha):
     """Where a ray is not followed on, the surface it would leave covers all."""
     glb = Glb()

@@ -5,6 +5,7 @@ import filecmp
 
 import numpy as np
 import pytest
+
 from glb import Glb
 
 SIDE, COPIES = 100, 25  # a sheet of 20,000 triangles
@@ -15,8 +16,10 @@ def both(sheaf, scene, *options, **how):
     return sheaf.all(calls)
 
 
-@pytest.mark.parametrize(("strategy", "primary"), [("bvh", "raster"), ("hybrid", "trace"), ("crsh", "trace"),
-                                                   ("frustum", "raster"), ("classify", "trace")])
+@pytest.mark.parametrize(
+    ("strategy", "primary"),
+    [("bvh", "raster"), ("hybrid", "trace"), ("crsh", "trace"), ("frustum", "raster"), ("classify", "trace")],
+)
 @pytest.mark.parametrize("scene", ["instanced", "whitted", "hierarchy", "negative_scale", "alpha_mask"])
 def test_same_bytes_as_copied(sheaf, scene, strategy, primary):
     """Rigid, skinned, morphed and mirrored; materials that are asked; frames in which things move."""
@@ -42,8 +45,10 @@ def sheets() -> bytes:
     x, y = np.meshgrid(np.linspace(-1, 1, SIDE + 1), np.linspace(-1, 1, SIDE + 1))
     points = np.stack([x, y, 0.1 * np.sin(5 * x)], axis=-1).reshape(-1, 3)
     corner = (np.arange(SIDE)[:, None] * (SIDE + 1) + np.arange(SIDE)).reshape(-1, 1)
-    triangles = np.concatenate([corner + (0, 1, SIDE + 2), corner + (0, SIDE + 2, SIDE + 1)])
-    sheet = glb.mesh({"attributes": {"POSITION": glb.attribute(points, bounds=True)}, "indices": glb.indices(triangles)})
+    triangles = np.concatenate([(*corner, 0, 1, SIDE + 2), (*corner, 0, SIDE + 2, SIDE + 1)])
+    sheet = glb.mesh(
+        {"attributes": {"POSITION": glb.attribute(points, bounds=True)}, "indices": glb.indices(triangles)}
+    )
     places = [(2.5 * (n % 5), 2.5 * (n // 5), -20) for n in range(COPIES)]
     extension = glb.uses("EXT_mesh_gpu_instancing", required=True)
     attributes = {"TRANSLATION": glb.accessor(np.asarray(places))}

@@ -7,15 +7,26 @@ import signal
 import subprocess
 
 import pytest
+
 from rendering import PATIENCE, program, read_exr, scene_path
 
 
 def start(out, *options: object, size: str = "48x24", strategy: str = "bvh") -> subprocess.Popen:
-    command = [program(), "render", scene_path("interpolation"), "--out", out, "--size", size, "--strategy", strategy,
-               "--frames", "0-99999", "--progress", "json", "--stats", out / "stats.json", *options]
+    command = [
+        program(),
+        "render",
+        scene_path("interpolation"),
+        "--out", out, "--size", size, "--strategy", strategy, "--frames", "0-99999", "--progress", "json",
+        "--stats", out / "stats.json", *options,
+    ]  # fmt: skip
     # A group of its own: a signal meant for it cannot reach the test.
-    return subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            start_new_session=True)
+    return subprocess.Popen(
+        [str(part) for part in command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
 
 
 def events_until(process: subprocess.Popen, frames: int) -> list[dict]:
@@ -34,7 +45,8 @@ def test_interrupted(tmp_path, sheaf, number, code):
     process = start(out)
     events = events_until(process, 3)
     os.kill(process.pid, number)
-    assert process.stdout and process.stderr
+    assert process.stdout
+    assert process.stderr
     events += [json.loads(line) for line in process.stdout]  # not communicate(): it passes by what was read ahead
     error = process.stderr.read()
     process.wait(PATIENCE)
@@ -53,8 +65,9 @@ def test_interrupted(tmp_path, sheaf, number, code):
     assert [f["frame"] for f in stats["frames"]] == done
 
     last = done[-1]
-    resumed = sheaf.render("interpolation", "--frames", f"0-{last + 1}", "--resume", "--progress", "json", out=out,
-                           size="48x24")
+    resumed = sheaf.render(
+        "interpolation", "--frames", f"0-{last + 1}", "--resume", "--progress", "json", out=out, size="48x24"
+    )
     assert [e["frame"] for e in resumed.events() if e["event"] == "frame"] == [last + 1]
 
 

@@ -3,13 +3,31 @@
 
 import numpy as np
 import pytest
+
 from physics import box_of, close, inside, pixels, unit
 from rendering import Picture, scene_path
 
-TYPES = {"A": "float16", "B": "float16", "G": "float16", "R": "float16", "Z": "float32", "N.X": "float32", "N.Y": "float32",
-         "N.Z": "float32", "P.X": "float32", "P.Y": "float32", "P.Z": "float32", "albedo.R": "float16", "albedo.G": "float16",
-         "albedo.B": "float16", "UV.X": "float32", "UV.Y": "float32", "id.object": "uint32", "id.material": "uint32",
-         "tests": "float32"}
+TYPES = {
+    "A": "float16",
+    "B": "float16",
+    "G": "float16",
+    "R": "float16",
+    "Z": "float32",
+    "N.X": "float32",
+    "N.Y": "float32",
+    "N.Z": "float32",
+    "P.X": "float32",
+    "P.Y": "float32",
+    "P.Z": "float32",
+    "albedo.R": "float16",
+    "albedo.G": "float16",
+    "albedo.B": "float16",
+    "UV.X": "float32",
+    "UV.Y": "float32",
+    "id.object": "uint32",
+    "id.material": "uint32",
+    "tests": "float32",
+}
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +49,9 @@ def test_names_and_types(sheaf):
 
 
 def test_layers_do_not_change_the_picture(sheaf):
-    with_layers, without = sheaf.all({"scene": "cornell", "options": options, "strategy": "hybrid"}
-                                     for options in (("--aov", "all"), ()))
+    with_layers, without = sheaf.all(
+        {"scene": "cornell", "options": options, "strategy": "hybrid"} for options in (("--aov", "all"), ())
+    )
     assert np.array_equal(with_layers.frame().rgba, without.frame().rgba)
 
 
@@ -157,10 +176,12 @@ def test_layers_are_of_the_first_sample(sheaf):
 @pytest.mark.parametrize(("given", "expected"), [("inf", np.inf), ("-1", -1.0), ("1e30", np.float32(1e30)), ("0", 0.0)])
 def test_depth_of_the_background_is_what_is_asked_for(sheaf, strategy, given, expected):
     usual = sheaf.render("non_indexed", "--aov", "Z,id", strategy=strategy, size="48x24").frame()
-    picture = sheaf.render("non_indexed", "--aov", "Z,id", f"--z-background={given}", strategy=strategy,
-                           size="48x24").frame()
+    picture = sheaf.render(
+        "non_indexed", "--aov", "Z,id", f"--z-background={given}", strategy=strategy, size="48x24"
+    ).frame()
     miss = picture.channels["id.object"] == 0
-    assert miss.any() and not miss.all()
+    assert miss.any()
+    assert not miss.all()
     assert (picture.channels["Z"][miss] == expected).all()
     assert (usual.channels["Z"][miss] == 1e10).all()
     assert np.array_equal(picture.channels["Z"][~miss], usual.channels["Z"][~miss])
@@ -168,5 +189,7 @@ def test_depth_of_the_background_is_what_is_asked_for(sheaf, strategy, given, ex
 
 @pytest.mark.parametrize("given", ["nan", "far", "1e10x", "1e39", ""])
 def test_depth_of_the_background_is_a_number(sheaf, given):
-    run = sheaf("render", scene_path("non_indexed"), "--out", sheaf.folder / "out", f"--z-background={given}", code=(2, 3))
+    run = sheaf(
+        "render", scene_path("non_indexed"), "--out", sheaf.folder / "out", f"--z-background={given}", code=(2, 3)
+    )
     assert "z-background" in run.stderr

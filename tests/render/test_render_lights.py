@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import ambient, box_of, close, dot, inside, pixels, reflected, unit
 from shapes import box, facing_up, look_at, turn
@@ -59,8 +60,10 @@ def build(material: dict, lights, more=None) -> bytes:
     glb = Glb()
     plane = glb.primitive(facing_up(8, 8), glb.material("plane", **material))
     nodes = [glb.node("plane", mesh=glb.mesh(plane))]
-    nodes += [glb.light(f"light {k}", kind, intensity, color, placed, **rest)
-              for k, (kind, intensity, color, placed, rest) in enumerate(lights)]
+    nodes += [
+        glb.light(f"light {k}", kind, intensity, color, placed, **rest)
+        for k, (kind, intensity, color, placed, rest) in enumerate(lights)
+    ]
     if more:
         nodes += more(glb)
     eye = glb.orthographic("camera", 1, 1, 0.01, 100)
@@ -69,8 +72,12 @@ def build(material: dict, lights, more=None) -> bytes:
     return glb.bytes()
 
 
-SURFACES = {"rough": {"metallic": 0.0, "roughness": 0.9, "ior": 1.5}, "gloss": {"metallic": 0.0, "roughness": 0.45, "ior": 1.8},
-            "metal": {"metallic": 1.0, "roughness": 0.5, "ior": 1.5}, "half metal": {"metallic": 0.5, "roughness": 0.6, "ior": 1.3}}
+SURFACES = {
+    "rough": {"metallic": 0.0, "roughness": 0.9, "ior": 1.5},
+    "gloss": {"metallic": 0.0, "roughness": 0.45, "ior": 1.8},
+    "metal": {"metallic": 1.0, "roughness": 0.5, "ior": 1.5},
+    "half metal": {"metallic": 0.5, "roughness": 0.6, "ior": 1.3},
+}
 
 
 @pytest.mark.parametrize("surface", SURFACES)
@@ -78,14 +85,20 @@ def test_every_kind_of_light_on_every_kind_of_surface(sheaf, tmp_path, surface):
     """A point light with a range, a spot light, a directional one, all coloured, and light from all around."""
     base = np.array((0.8, 0.5, 0.2))
     optics = SURFACES[surface]
-    material = {"base": tuple(base), "metallic": optics["metallic"], "roughness": optics["roughness"],
-                "extensions": {"KHR_materials_ior": {"ior": optics["ior"]}}}
+    material = {
+        "base": tuple(base),
+        "metallic": optics["metallic"],
+        "roughness": optics["roughness"],
+        "extensions": {"KHR_materials_ior": {"ior": optics["ior"]}},
+    }
     cone = {"innerConeAngle": 0.1, "outerConeAngle": 0.5}
     spot_at, sun_from = np.array((-0.5, 1.5, 0.25)), unit((0.5, 1.0, -0.75))
     aim = look_at(spot_at, (0.25, 0, 0))
-    lights = [("point", 3.0, (1, 0.5, 0.25), {"translation": (0.4, 0.75, 0.3)}, {"range": 1.25}),
-              ("spot", 5.0, (0.2, 0.6, 1), {"translation": spot_at, "rotation": aim}, {"spot": cone}),
-              ("directional", 0.5, (0.9, 0.8, 1), {"rotation": look_at(sun_from, (0, 0, 0))}, {})]
+    lights = [
+        ("point", 3.0, (1, 0.5, 0.25), {"translation": (0.4, 0.75, 0.3)}, {"range": 1.25}),
+        ("spot", 5.0, (0.2, 0.6, 1), {"translation": spot_at, "rotation": aim}, {"spot": cone}),
+        ("directional", 0.5, (0.9, 0.8, 1), {"rotation": look_at(sun_from, (0, 0, 0))}, {}),
+    ]
     path = tmp_path / "lit.glb"
     path.write_bytes(build(material, lights))
     surround = np.array((0.125, 0.25, 0.5))
@@ -106,19 +119,23 @@ def test_every_kind_of_light_on_every_kind_of_surface(sheaf, tmp_path, surface):
     wanted = wanted + reflected(base, UP, UP, away, **optics) * (angle / dot(away, away))[..., None] * 5 * (0.2, 0.6, 1)
     wanted = wanted + reflected(base, UP, UP, sun_from, **optics) * 0.5 * (0.9, 0.8, 1)
     assert (fade == 0).any()
-    assert ((angle == 0).any() and (angle > 0.9).any())
+    assert (angle == 0).any()
+    assert (angle > 0.9).any()
     close(picture.rgb, wanted, relative=1.5e-3)
 
 
 def test_light_through_panes_is_tinted(sheaf, tmp_path):
     """Shadow rays through alpha blending, thin coloured glass, and a volume that absorbs."""
+
     def panes(glb: Glb) -> list:
         blend = glb.unlit("blend", (1, 0, 0, 0.25), alphaMode="BLEND")
         thin = glb.glass("thin", 1.5, 0, (0.5, 1, 0.25))
         thick = glb.glass("thick", 1.5, 0.25, colour=(0.25, 0.5, 1), distance=0.5)
         quad = facing_up(0.5, 4)
-        nodes = [glb.node(name, at, mesh=glb.mesh(glb.primitive(quad, m), name))
-                 for name, at, m in (("blend", (-0.75, 3, 0), blend), ("thin", (-0.25, 3, 0), thin))]
+        nodes = [
+            glb.node(name, at, mesh=glb.mesh(glb.primitive(quad, m), name))
+            for name, at, m in (("blend", (-0.75, 3, 0), blend), ("thin", (-0.25, 3, 0), thin))
+        ]
         slab = glb.primitive(box((0.5, 0.25, 4)), thick)
         return [*nodes, glb.node("thick", (0.25, 3, 0), mesh=glb.mesh(slab, "thick"))]
 

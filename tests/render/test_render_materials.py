@@ -6,6 +6,7 @@ import struct
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import BLACK, box_of, close, inside, pixels
 from rendering import SCENES
@@ -42,12 +43,26 @@ REGIONS = {
     "sparse": [((-1, 1, -1, 1), (0, 1, 1)), ((1, 2, -1, 1), None)],
     "degenerate": [((-0.5, 0.5, -0.5, 0.5), WHITE), ((0.9, 1.6, -0.25, 0.25), None)],
     "zero_scale": [((0.75, 1.25, -0.25, 0.25), WHITE), ((-1.5, 0.5, -1, 1), None)],
-    "alpha_blend": [((-0.75, -0.25, -0.5, 0.5), (0.25, 0, 0.75)), ((-0.25, 0.25, -0.5, 0.5), (0.25, 0.375, 0.375)),
-                    ((0.25, 0.75, -0.5, 0.5), (0, 0.5, 0.5)), ((0.75, 2, -1, 1), BLUE)],
-    "normalised": [((-1, 0, 0, 1), (0.2, 0.4, 1)), ((0, 1, 0, 1), (0.2, 0, 0)), ((-1, 0, -1, 0), (0, 0.4, 0)),
-                   ((0, 1, -1, 0), (0, 0, 1))],
-    "uv_sets": [((-2, -1, 0, 1), BLUE), ((-1, 0, 0, 1), RED), ((-2, -1, -1, 0), WHITE), ((-1, 0, -1, 0), GREEN),
-                ((0, 1, -1, 1), BLACK_), ((1, 2, -1, 1), (0.5,) * 3)],
+    "alpha_blend": [
+        ((-0.75, -0.25, -0.5, 0.5), (0.25, 0, 0.75)),
+        ((-0.25, 0.25, -0.5, 0.5), (0.25, 0.375, 0.375)),
+        ((0.25, 0.75, -0.5, 0.5), (0, 0.5, 0.5)),
+        ((0.75, 2, -1, 1), BLUE),
+    ],
+    "normalised": [
+        ((-1, 0, 0, 1), (0.2, 0.4, 1)),
+        ((0, 1, 0, 1), (0.2, 0, 0)),
+        ((-1, 0, -1, 0), (0, 0.4, 0)),
+        ((0, 1, -1, 0), (0, 0, 1)),
+    ],
+    "uv_sets": [
+        ((-2, -1, 0, 1), BLUE),
+        ((-1, 0, 0, 1), RED),
+        ((-2, -1, -1, 0), WHITE),
+        ((-1, 0, -1, 0), GREEN),
+        ((0, 1, -1, 1), BLACK_),
+        ((1, 2, -1, 1), (0.5,) * 3),
+    ],
 }
 TOLERANT = {"normalised": {"relative": 5e-4}, "alpha_blend": {"relative": 5e-4}}
 
@@ -70,8 +85,14 @@ def test_wrapping_and_filtering(sheaf):
     picture = sheaf.render("samplers", *BLACK, size="120x60").frame()
     for centre, letters in ((-1.5, "RBRBRB"), (-0.5, "BRRBBR"), (0.5, "RRRBBB")):
         left = centre - 0.45
-        check_regions(picture, [((left + 0.15 * k, left + 0.15 * (k + 1), -0.45, 0.45), RED if c == "R" else BLUE)
-                                for k, c in enumerate(letters)], **EXACT)
+        check_regions(
+            picture,
+            [
+                ((left + 0.15 * k, left + 0.15 * (k + 1), -0.45, 0.45), RED if c == "R" else BLUE)
+                for k, c in enumerate(letters)
+            ],
+            **EXACT,
+        )
     x, y = view(picture)
     square, sure = inside(x, y, box_of(1.05, 1.95, -0.45, 0.45))
     blue = np.clip(((x - 1.05) / 0.9) * 2 - 0.5, 0, 1)  # texel centres at u = 1/4 and 3/4
@@ -110,9 +131,13 @@ def test_cut_offs_and_blending_agree_with_alpha(sheaf, tmp_path):
     """Alpha of 0, of 1, of more than 1 by vertex colour, and coverage of a blended surface over nothing."""
     glb = Glb()
     nodes = []
-    for k, (alpha, mode) in enumerate(((0.0, "BLEND"), (0.25, "BLEND"), (1.0, "BLEND"), (0.25, "OPAQUE"), (0.25, "MASK"))):
+    for k, (alpha, mode) in enumerate(
+        ((0.0, "BLEND"), (0.25, "BLEND"), (1.0, "BLEND"), (0.25, "OPAQUE"), (0.25, "MASK"))
+    ):
         more = {"alphaMode": mode} | ({"alphaCutoff": 0.25} if mode == "MASK" else {})
-        quad = glb.primitive(facing_z(0.5, 2, 0, (-1.75 + 0.5 * k, 0)), glb.unlit(f"m{k}", (1, 0.5, 0.25, alpha), **more))
+        quad = glb.primitive(
+            facing_z(0.5, 2, 0, (-1.75 + 0.5 * k, 0)), glb.unlit(f"m{k}", (1, 0.5, 0.25, alpha), **more)
+        )
         nodes.append(glb.node(f"quad {k}", mesh=glb.mesh(quad)))
     nodes.append(glb.node("eye", (0, 0, 5), camera=glb.orthographic("camera", 2, 1)))
     glb.scene(nodes)
@@ -121,7 +146,7 @@ def test_cut_offs_and_blending_agree_with_alpha(sheaf, tmp_path):
     rgba = sheaf.render(path, *BLACK, size="64x32").frame().rgba
     wanted = [(0, 0, 0, 0), (0.25, 0.125, 0.0625, 0.25), (1, 0.5, 0.25, 1), (1, 0.5, 0.25, 1), (1, 0.5, 0.25, 1)]
     for k, colour in enumerate(wanted):  # 8 columns each
-        close(rgba[:, 8 * k + 1:8 * k + 7], colour, absolute=0)
+        close(rgba[:, 8 * k + 1 : 8 * k + 7], colour, absolute=0)
 
 
 def still_life_moved(offset) -> bytes:
@@ -130,22 +155,30 @@ def still_life_moved(offset) -> bytes:
     length = struct.unpack_from("<I", data, 12)[0]
     document = json.loads(data[20 : 20 + length])
     for node in document["nodes"]:
-        node["translation"] = [a + b for a, b in zip(node.get("translation", (0, 0, 0)), offset)]
+        node["translation"] = [a + b for a, b in zip(node.get("translation", (0, 0, 0)), offset, strict=True)]
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     rest = data[20 + length :]
-    return (b"glTF" + struct.pack("<II", 2, 20 + len(text) + len(rest)) + struct.pack("<I", len(text)) + b"JSON"
-            + text + rest)
+    return (
+        b"glTF"
+        + struct.pack("<II", 2, 20 + len(text) + len(rest))
+        + struct.pack("<I", len(text))
+        + b"JSON"
+        + text
+        + rest
+    )
 
 
 def test_still_life_is_the_same_at_any_scale_and_place(sheaf, tmp_path):
     away = tmp_path / "away.glb"
     away.write_bytes(still_life_moved((1e7, -1e7, 1e7)))
-    runs = sheaf.all({"scene": scene, "size": "96x54"} for scene in
-                     ("still_life", away, "still_life_far", "still_life_tiny", "still_life_huge"))
+    runs = sheaf.all(
+        {"scene": scene, "size": "96x54"}
+        for scene in ("still_life", away, "still_life_far", "still_life_tiny", "still_life_huge")
+    )
     first, *others = (run.frame().rgb for run in runs)
     assert first.max() > 0.2
-    for run, rgb in zip(runs[1:], others):
+    for run, rgb in zip(runs[1:], others, strict=True):
         differs = (np.abs(rgb - first) > 0.01 * first + 1e-3).any(-1)
         # Silhouettes: a vertex rounds differently. The far file holds nine digits of 10⁷ m: a decimetre.
         assert differs.mean() < (0.06 if "far" in next(iter(run.files.values())).name else 0.01)
@@ -169,8 +202,8 @@ def test_nothing_to_see(sheaf, scene):
 
 @pytest.mark.parametrize("spp", [4, 16, 64])
 def test_samples_are_one_a_stratum(sheaf, spp):
-    """An upright edge through a box-filtered pixel: samples have one place in each of spp columns, so they miss its share by less
-    than one of them; and each counts alike."""
+    """An upright edge through a box-filtered pixel: samples have one place in each of spp columns, so they miss its
+    share by less than one of them; and each counts alike."""
     rgba = sheaf.render("unlit", "--spp", spp, "--filter", "box", size="47x24").frame().rgba.astype(float)
     aspect = 47 / 24
     edge = (1 / aspect + 1) / 2 * 47  # x = 1 in pixels from the left
@@ -179,4 +212,3 @@ def test_samples_are_one_a_stratum(sheaf, spp):
         assert np.abs(rgba[:, column, 3] - covered).max() < 1 / spp, column
         assert np.allclose(rgba[:, column, 3] * spp, np.round(rgba[:, column, 3] * spp))
         close(rgba[:, column, :3], np.array((0.25, 0.5, 0.75)) * rgba[:, column, 3:], absolute=0)
-

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Where things are: node trees, skins, morphs and the three interpolations, by silhouettes worked out by hand."""
 
+import itertools
+
 import numpy as np
 import pytest
+
 from glb import Glb
 from physics import box_of, inside, pixels
 from shapes import box
@@ -27,8 +30,10 @@ def check(picture, triangles, xmag=2.0, ymag=1.0, colour=None) -> None:
 
 def turned(centre, width, height, degrees) -> list:
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return [np.array(t) @ np.array([[c, s], [-s, c]]) + centre
-            for t in box_of(-width / 2, width / 2, -height / 2, height / 2)]
+    return [
+        np.array(t) @ np.array([[c, s], [-s, c]]) + centre
+        for t in box_of(-width / 2, width / 2, -height / 2, height / 2)
+    ]
 
 
 def test_hierarchy(sheaf):
@@ -36,28 +41,34 @@ def test_hierarchy(sheaf):
 
 
 def test_instances(sheaf):
-    check(sheaf.render("instanced", size="96x48").frame(),
-          squares(*((x, y) for x in (0, 0.5, 1) for y in (-0.5, 0, 0.5))))
+    check(
+        sheaf.render("instanced", size="96x48").frame(), squares(*((x, y) for x in (0, 0.5, 1) for y in (-0.5, 0, 0.5)))
+    )
 
 
 def test_strips_and_fans(sheaf):
     picture = sheaf.render("strips_fans", size="192x96").frame()
-    strip = [[(-1.75, -0.5), (-0.75, -0.5), (-1.75, 0.5)], [(-0.75, -0.5), (-0.75, 0.5), (-1.75, 0.5)],
-             [(-1.75, 0.5), (-0.75, 0.5), (-1.75, 0.75)]]
+    strip = [
+        [(-1.75, -0.5), (-0.75, -0.5), (-1.75, 0.5)],
+        [(-0.75, -0.5), (-0.75, 0.5), (-1.75, 0.5)],
+        [(-1.75, 0.5), (-0.75, 0.5), (-1.75, 0.75)],
+    ]
     corners = [(0.5 * np.cos(a), 0.5 * np.sin(a)) for a in np.radians(np.arange(0, 361, 60))]
     check(picture, strip, colour=(1, 0, 0))
-    check(picture, [[(0, 0), a, b] for a, b in zip(corners, corners[1:])], colour=(0, 1, 0))
+    check(picture, [[(0, 0), a, b] for a, b in itertools.pairwise(corners)], colour=(0, 1, 0))
     check(picture, box_of(0.75, 1.75, -0.5, 0.5), colour=(0, 0, 1))
 
 
 def test_mirrored_node(sheaf):
-    check(sheaf.render("negative_scale", size="96x48").frame(),
-          box_of(0.25, 1.25, -0.5, 0.5) + box_of(-1.25, -0.25, -0.5, 0.5))
+    check(
+        sheaf.render("negative_scale", size="96x48").frame(),
+        box_of(0.25, 1.25, -0.5, 0.5) + box_of(-1.25, -0.25, -0.5, 0.5),
+    )
 
 
 def strip_of(rows) -> list:
     """Quads between pairs (left, right) of points."""
-    return [t for (a, b), (c, d) in zip(rows, rows[1:]) for t in ((a, b, d), (a, d, c))]
+    return [t for (a, b), (c, d) in itertools.pairwise(rows) for t in ((a, b, d), (a, d, c))]
 
 
 @pytest.mark.parametrize("scene", ["skin", "skin8"])
@@ -95,8 +106,12 @@ def test_interpolation(sheaf):
         step = (0, 1, 0)[2 if t >= 2 else k]
         linear = u if k == 0 else 1 - u
         ends, slopes = ((0, 1), (2, 0)) if k == 0 else ((1, 0), (0, 2))
-        cubic = ((2 * u**3 - 3 * u**2 + 1) * ends[0] + (u**3 - 2 * u**2 + u) * slopes[0]
-                 + (-2 * u**3 + 3 * u**2) * ends[1] + (u**3 - u**2) * slopes[1])
+        cubic = (
+            (2 * u**3 - 3 * u**2 + 1) * ends[0]
+            + (u**3 - 2 * u**2 + u) * slopes[0]
+            + (-2 * u**3 + 3 * u**2) * ends[1]
+            + (u**3 - u**2) * slopes[1]
+        )
         if t >= 2:
             linear = cubic = 0
         grow = np.clip(t - 0.5, 0, 1)
@@ -120,12 +135,19 @@ def test_stiff_keys(sheaf):
 def test_scenes_and_animations(sheaf):
     """The default scene is the second; animations by name, by index, and all of them."""
     red, blue = (1, 0, 0), (0, 0, 1)
-    picks = {(): ((0, 0.5), 0, blue), ("--animation", "up"): ((0, 0.5), 0, blue), ("--animation", "turn"): ((0, 0), 45, blue),
-             ("--animation", 1): ((0, 0), 45, blue), ("--animation", "all"): ((0, 0.5), 45, blue),
-             ("--scene-name", "red scene"): ((0, 0.5), 0, red), ("--scene-name", 0): ((0, 0.5), 0, red)}
-    runs = sheaf.all({"scene": "scenes_animations", "options": ("--fps", 1, "--frames", 1, *pick), "size": "96x48"}
-                     for pick in picks)
-    for run, (centre, angle, colour) in zip(runs, picks.values()):
+    picks = {
+        (): ((0, 0.5), 0, blue),
+        ("--animation", "up"): ((0, 0.5), 0, blue),
+        ("--animation", "turn"): ((0, 0), 45, blue),
+        ("--animation", 1): ((0, 0), 45, blue),
+        ("--animation", "all"): ((0, 0.5), 45, blue),
+        ("--scene-name", "red scene"): ((0, 0.5), 0, red),
+        ("--scene-name", 0): ((0, 0.5), 0, red),
+    }
+    runs = sheaf.all(
+        {"scene": "scenes_animations", "options": ("--fps", 1, "--frames", 1, *pick), "size": "96x48"} for pick in picks
+    )
+    for run, (centre, angle, colour) in zip(runs, picks.values(), strict=True):
         check(run.frame(1), turned(centre, 1, 1, angle), colour=colour)
 
 
@@ -138,9 +160,10 @@ def test_frames_repeat_after_a_closed_loop(sheaf):
 def test_cameras_by_name_and_index(sheaf):
     """Each sees the box side that faces it; a 1 m square from 4 m with tan(fov/2) = 1/4 fills half the height."""
     picks = [("front", (0, 0, 1)), ("right", (1, 0, 0)), ("top", (0, 1, 0)), (None, (0, 0, 1)), ("1", (1, 0, 0))]
-    runs = sheaf.all({"scene": "cameras", "options": ("--camera-node", name) if name else (), "size": "96x48"}
-                     for name, _ in picks)
-    for run, (_, colour) in zip(runs, picks):
+    runs = sheaf.all(
+        {"scene": "cameras", "options": ("--camera-node", name) if name else (), "size": "96x48"} for name, _ in picks
+    )
+    for run, (_, colour) in zip(runs, picks, strict=True):
         check(run.frame(), box_of(-0.5, 0.5, -0.5, 0.5), colour=colour)  # 2 m high for the flat camera too
 
 

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from optics_scenes import _slab, oblique_edge
 from physics import BLACK, box_of, close, dot, fresnel, inside, pixels, reflected, refract, schlick
@@ -65,8 +66,12 @@ def test_oblique_slab_shifts_the_wall(sheaf):
 
 def test_total_internal_reflection(sheaf):
     """Nothing passes the hypotenuse (45°, past 41.8°): the red wall behind it is not seen, the green one is."""
-    two, three, many = (run.frame().rgb for run in sheaf.all(
-        {"scene": "prism", "options": ("--depth", depth, *ALL), "size": "32x32"} for depth in (2, 3, 16)))
+    two, three, many = (
+        run.frame().rgb
+        for run in sheaf.all(
+            {"scene": "prism", "options": ("--depth", depth, *ALL), "size": "32x32"} for depth in (2, 3, 16)
+        )
+    )
     close(two, 0, absolute=STRAY)
     close(three, (0, LOSS**2, 0), absolute=STRAY)
     close(many, (0, LOSS**2 / (1 - (1 - LOSS) ** 2), 0), absolute=STRAY)
@@ -88,8 +93,15 @@ def mirror_count(size: int) -> np.ndarray:
     return np.where(np.abs(far - np.round(far)) < 1e-4, -1, count)
 
 
-@pytest.mark.parametrize(("options", "bounces"), [(("--depth", 6, "--cutoff", 0), 6), (("--depth", 2, "--cutoff", 0), 2),
-                                                  (("--depth", 6, "--cutoff", 0.85), 1), (("--depth", 0), 0)])
+@pytest.mark.parametrize(
+    ("options", "bounces"),
+    [
+        (("--depth", 6, "--cutoff", 0), 6),
+        (("--depth", 2, "--cutoff", 0), 2),
+        (("--depth", 6, "--cutoff", 0.85), 1),
+        (("--depth", 0), 0),
+    ],
+)
 def test_facing_mirrors(sheaf, options, bounces):
     """A power of the mirror's colour; no further than --depth generations, nor than --cutoff lets weights fall."""
     rgb = sheaf.render("mirrors", *options, *BLACK, size="32x32").frame().rgb
@@ -117,8 +129,10 @@ def test_mirror_share_and_schlick(sheaf, tmp_path, metallic, roughness):
     base = np.array((0.6, 0.4, 0.2))
     glb = Glb()
     plane = glb.primitive(facing_z(40, 40), glb.material("plane", tuple(base), metallic, roughness))
-    nodes = [glb.node("plane", mesh=glb.mesh(plane)), glb.light("behind", "directional", 1, placed={
-        "rotation": look_at((0, 0, -1), (0, 0, 0))})]
+    nodes = [
+        glb.node("plane", mesh=glb.mesh(plane)),
+        glb.light("behind", "directional", 1, placed={"rotation": look_at((0, 0, -1), (0, 0, 0))}),
+    ]
     eye = (5 * math.sin(math.radians(60)), 0, 5 * math.cos(math.radians(60)))
     nodes.append(glb.node("camera", eye, look_at(eye, (0, 0, 0)), camera=glb.orthographic("camera", 0.1, 0.1)))
     glb.scene(nodes)
@@ -138,13 +152,18 @@ def test_a_ray_that_grazes_glass_keeps_its_energy(sheaf, tmp_path):
     glb = Glb()
     pane = glb.primitive(facing_z(40, 40), glb.glass("pane", 1.5, 0))
     eye = (5 * math.sin(math.radians(80)), 0, 5 * math.cos(math.radians(80)))
-    glb.scene([glb.node("pane", mesh=glb.mesh(pane)),
-               glb.light("behind", "directional", 1, placed={"rotation": look_at((0, 0, -1), (0, 0, 0))}),
-               glb.node("camera", eye, look_at(eye, (0, 0, 0)), camera=glb.orthographic("camera", 0.1, 0.1))])
+    glb.scene(
+        [
+            glb.node("pane", mesh=glb.mesh(pane)),
+            glb.light("behind", "directional", 1, placed={"rotation": look_at((0, 0, -1), (0, 0, 0))}),
+            glb.node("camera", eye, look_at(eye, (0, 0, 0)), camera=glb.orthographic("camera", 0.1, 0.1)),
+        ]
+    )
     path = tmp_path / "pane.glb"
     path.write_bytes(glb.bytes())
-    runs = sheaf.all({"scene": path, "options": ("--cutoff", 0, "--environment", e), "size": "8x8"}
-                     for e in ("1,1,1", "0,0,0"))
+    runs = sheaf.all(
+        {"scene": path, "options": ("--cutoff", 0, "--environment", e), "size": "8x8"} for e in ("1,1,1", "0,0,0")
+    )
     close(runs[0].frame().rgb, (1, 1, 1))
     close(runs[1].frame().rgb, (0, 0, 0))
     assert (runs[0].frame().alpha == 1).all()
@@ -154,13 +173,20 @@ def test_highlight_of_a_smooth_surface(sheaf, tmp_path):
     """The narrowest lobe (roughness is held at 0.1) right at the mirror's angle and beside it."""
     glb = Glb()
     plane = glb.primitive(facing_z(40, 40), glb.material("plane", (0.2, 0.2, 0.2), 0, 0.05))
-    glb.scene([glb.node("plane", mesh=glb.mesh(plane)), glb.light("lamp", "point", 2, placed={"translation": (0, 0, 2)}),
-               glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", 0.25, 0.25))])
+    glb.scene(
+        [
+            glb.node("plane", mesh=glb.mesh(plane)),
+            glb.light("lamp", "point", 2, placed={"translation": (0, 0, 2)}),
+            glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", 0.25, 0.25)),
+        ]
+    )
     path = tmp_path / "highlight.glb"
     path.write_bytes(glb.bytes())
     rgb = sheaf.render(path, *ALL, size="24x24").frame().rgb
     x, y = pixels(24, 24, 0.25, 0.25)
     to_lamp = np.stack([-x, -y, np.full_like(x, 2)], -1)
-    wanted = reflected((0.2,) * 3, (0, 0, 1), (0, 0, 1), to_lamp, roughness=0.05) * (2 / dot(to_lamp, to_lamp))[..., None]
+    wanted = (
+        reflected((0.2,) * 3, (0, 0, 1), (0, 0, 1), to_lamp, roughness=0.05) * (2 / dot(to_lamp, to_lamp))[..., None]
+    )
     assert wanted.max() > 20 * wanted.min()
     close(rgb, wanted, relative=3e-3)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""First hits by raster against those of traced camera rays: the same bytes where triangles' spans are tested (CPU devices),
-and all but edges where the graphics pipeline draws."""
+"""First hits by raster against those of traced camera rays: the same bytes where triangles' spans are tested (CPU
+devices), and all but edges where the graphics pipeline draws."""
 
 import numpy as np
 import pytest
+
 from glb import Glb
 from rendering import SCENE_NAMES
 from shapes import Shape
@@ -12,8 +13,10 @@ SPANS = {"SHEAF_RASTER": "spans"}
 
 
 def both_ways(sheaf, scene, *options, size="64x36", env=SPANS) -> list:
-    return sheaf.all({"scene": scene, "options": ("--primary", way, "--aov", "id,Z", *options), "size": size, "env": env}
-                     for way in ("raster", "trace"))
+    return sheaf.all(
+        {"scene": scene, "options": ("--primary", way, "--aov", "id,Z", *options), "size": size, "env": env}
+        for way in ("raster", "trace")
+    )
 
 
 def same_bytes(runs, frame: int) -> None:
@@ -47,8 +50,17 @@ def soup(lens, seed: int) -> bytes:
     corners = np.concatenate([corners[small], corners[~small][:60]])  # few large ones, that some small ones be seen
     glb = Glb()
     shape = Shape(corners.reshape(-1, 3).astype(np.float32), np.arange(corners.shape[0] * 3).reshape(-1, 3))
-    nodes = [glb.node(f"part {k}", mesh=glb.mesh(glb.primitive(
-        Shape(shape.positions, shape.triangles[k::4]), glb.unlit(f"colour {k}", (0.2 * k, 1 - 0.2 * k, 0.5))))) for k in range(4)]
+    nodes = [
+        glb.node(
+            f"part {k}",
+            mesh=glb.mesh(
+                glb.primitive(
+                    Shape(shape.positions, shape.triangles[k::4]), glb.unlit(f"colour {k}", (0.2 * k, 1 - 0.2 * k, 0.5))
+                )
+            ),
+        )
+        for k in range(4)
+    ]
     glb.scene([*nodes, glb.node("camera", (0, 0, 0), camera=glb.add("cameras", lens))], "soup")
     return glb.bytes()
 
@@ -58,7 +70,10 @@ LENSES = {
     "telephoto": {"type": "perspective", "perspective": {"yfov": 1e-4, "znear": 1e-3}},
     "near and far": {"type": "perspective", "perspective": {"yfov": 1.0, "znear": 2.0, "zfar": 9.0}},
     "orthographic": {"type": "orthographic", "orthographic": {"xmag": 16, "ymag": 9, "znear": 0.5, "zfar": 50}},
-    "orthographic speck": {"type": "orthographic", "orthographic": {"xmag": 1.6e-3, "ymag": 9e-4, "znear": 0, "zfar": 1e4}},
+    "orthographic speck": {
+        "type": "orthographic",
+        "orthographic": {"xmag": 1.6e-3, "ymag": 9e-4, "znear": 0, "zfar": 1e4},
+    },
 }
 
 
@@ -83,16 +98,24 @@ def beside_an_edge(ids: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("scene", ["whitted", "cornell", "still_life", "interpolation", "skin", "cameras"])
 def test_the_pipeline_and_traced_rays_agree_but_at_edges(sheaf, scene):
-    """A device's own rasteriser snaps corners to a fraction of a pixel: a sample that close to an edge may name the neighbour."""
-    runs = sheaf.all({"scene": scene, "options": ("--primary", way, "--aov", "id,N", "--frames", 7), "size": "96x54",
-                      "env": {"SHEAF_RASTER": "pipeline"}} for way in ("raster", "trace"))
+    """A device's own rasteriser snaps corners to a fraction of a pixel: samples near an edge may name the neighbour."""
+    runs = sheaf.all(
+        {
+            "scene": scene,
+            "options": ("--primary", way, "--aov", "id,N", "--frames", 7),
+            "size": "96x54",
+            "env": {"SHEAF_RASTER": "pipeline"},
+        }
+        for way in ("raster", "trace")
+    )
     raster, trace = (run.frame(7) for run in runs)
     ids = raster.channels["id.object"]
     other = raster.channels["id.object"] != trace.channels["id.object"]
     assert not (other & ~beside_an_edge(ids)).any()
     differs = (raster.rgba.view(np.uint16) != trace.rgba.view(np.uint16)).any(-1)
     assert differs.mean() < 0.02
-    # A sample beside an inner edge may also take the neighbouring triangle of the same object: but for creases no visible step.
+    # A sample beside an inner edge may also take the neighbouring triangle of the same object: no visible step but at
+    # creases.
     bends = [np.abs(raster.channels[f"N.{axis}"] - trace.channels[f"N.{axis}"]) for axis in "XYZ"]
     within = differs & ~other & (np.max(bends, axis=0) < 0.01)
     np.testing.assert_allclose(raster.rgb[within], trace.rgb[within], rtol=0.02, atol=0.002)

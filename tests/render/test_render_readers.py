@@ -6,6 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
+
 from rendering import PATIENCE, Picture
 
 SIZE = "97x53"  # ends in the middle of every compression's chunk
@@ -23,7 +24,8 @@ def needs(program: str) -> None:
 def by_ffmpeg(path) -> np.ndarray:
     """R, G and B in 32 bits, as ffmpeg decodes them."""
     done = run("ffmpeg", "-v", "error", "-i", path, "-pix_fmt", "gbrpf32le", "-f", "rawvideo", "-")
-    assert done.returncode == 0 and not done.stderr, done.stderr.decode()
+    assert done.returncode == 0, done.stderr.decode()
+    assert not done.stderr
     width, height = map(int, SIZE.split("x"))
     green, blue, red = np.frombuffer(done.stdout, "<f4").reshape(3, height, width)
     return np.stack([red, green, blue], -1)
@@ -76,7 +78,8 @@ def test_the_preview_is_a_picture_of_the_frame(sheaf):
     render = sheaf.render("whitted", "--preview", size=SIZE)
     png = render.out / "whitted.0000.png"
     done = run("ffmpeg", "-v", "error", "-i", png, "-pix_fmt", "rgb24", "-f", "rawvideo", "-")
-    assert done.returncode == 0 and not done.stderr, done.stderr.decode()
+    assert done.returncode == 0, done.stderr.decode()
+    assert not done.stderr
     width, height = map(int, SIZE.split("x"))
     shown = np.frombuffer(done.stdout, np.uint8).reshape(height, width, 3)
     colour = render.frame().rgb

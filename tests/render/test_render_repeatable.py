@@ -15,8 +15,16 @@ def same(a, b) -> bool:
 @pytest.mark.parametrize("strategy", ["bvh", "hybrid"])
 def test_memory_budget_does_not_show(sheaf, strategy):
     """The least budget there is: tiles, and tiles cut again where their rays do not fit."""
-    small, usual = sheaf.all({"scene": "whitted", "options": ("--depth", 6, "--cutoff", 0, "--memory", mib), "stats": True,
-                              "size": "256x144", "strategy": strategy} for mib in (16, 1024))
+    small, usual = sheaf.all(
+        {
+            "scene": "whitted",
+            "options": ("--depth", 6, "--cutoff", 0, "--memory", mib),
+            "stats": True,
+            "size": "256x144",
+            "strategy": strategy,
+        }
+        for mib in (16, 1024)
+    )
     assert same(small.frame(), usual.frame())
     counts = [run.stats()["frames"][0] for run in (small, usual)]
     assert counts[0]["rays"] == counts[1]["rays"]
@@ -29,16 +37,20 @@ def test_memory_from_the_least_to_no_bound(sheaf, strategy):
     """The least there is, the greatest that may be asked for, and one between that ends tiles somewhere else."""
     if strategy == "rayquery" and not json.loads(sheaf("devices", "--json").stdout)[0]["ray_query"]:
         pytest.skip("the device has no ray query")
-    runs = sheaf.all({"scene": "cornell", "options": ("--depth", 3, "--memory", mib), "size": "96x54", "strategy": strategy}
-                     for mib in (16, 37, 1048576))
+    runs = sheaf.all(
+        {"scene": "cornell", "options": ("--depth", 3, "--memory", mib), "size": "96x54", "strategy": strategy}
+        for mib in (16, 37, 1048576)
+    )
     for run in runs[1:]:
         assert same(run.frame(), runs[0].frame())
     assert len(np.unique(runs[0].frame().rgba.reshape(-1, 4), axis=0)) > 100
 
 
 def test_frames_alone_and_in_a_range(sheaf):
-    runs = sheaf.all({"scene": "whitted", "options": ("--frames", frames), "strategy": "hybrid"}
-                     for frames in ("9-13", "11", "13,11,10", "9-13"))
+    runs = sheaf.all(
+        {"scene": "whitted", "options": ("--frames", frames), "strategy": "hybrid"}
+        for frames in ("9-13", "11", "13,11,10", "9-13")
+    )
     one, *others = runs
     assert sorted(one.files) == [9, 10, 11, 12, 13]
     for run in others:
@@ -48,16 +60,22 @@ def test_frames_alone_and_in_a_range(sheaf):
 
 
 def test_threads_do_not_show(sheaf):
-    files = [sheaf.render("whitted", "--frames", "5", strategy="hybrid", size="96x54", env={"LP_NUM_THREADS": threads})
-             .files[5].read_bytes() for threads in ("1", "2", "3")]
+    files = [
+        sheaf.render("whitted", "--frames", "5", strategy="hybrid", size="96x54", env={"LP_NUM_THREADS": threads})
+        .files[5]
+        .read_bytes()
+        for threads in ("1", "2", "3")
+    ]
     assert files[0] == files[1] == files[2]
 
 
 @pytest.mark.parametrize("strategy", ["bvh", "crsh", "frustum", "classify"])
 def test_more_threads_than_cores_do_not_show(sheaf, strategy):
     """And none but the caller's own."""
-    files = [sheaf.render("cornell", strategy=strategy, size="96x54", env={"LP_NUM_THREADS": threads}).files[0].read_bytes()
-             for threads in ("0", "1", "16")]
+    files = [
+        sheaf.render("cornell", strategy=strategy, size="96x54", env={"LP_NUM_THREADS": threads}).files[0].read_bytes()
+        for threads in ("0", "1", "16")
+    ]
     assert files[0] == files[1] == files[2]
 
 
@@ -68,11 +86,25 @@ def test_any_split_over_unlike_nodes(sheaf):
     dice = random.Random(5)
     shuffled = dice.sample(frames, len(frames))
     parts = [shuffled[:1], shuffled[1:4], shuffled[4:9], shuffled[9:]]
-    nodes = [("hybrid", 16, "1"), ("bvh", 64, "3"), ("crsh", 16, "2"), ("hybrid", 4096, "0"), ("frustum", 16, "1"),
-             ("classify", 16, "1")]
-    for part, (strategy, mib, threads) in zip(parts, nodes):
-        run = sheaf.render("whitted", "--frames", ",".join(map(str, part)), "--memory", mib, strategy=strategy, size="48x27",
-                           env={"LP_NUM_THREADS": threads})
+    nodes = [
+        ("hybrid", 16, "1"),
+        ("bvh", 64, "3"),
+        ("crsh", 16, "2"),
+        ("hybrid", 4096, "0"),
+        ("frustum", 16, "1"),
+        ("classify", 16, "1"),
+    ]
+    for part, (strategy, mib, threads) in zip(parts, nodes, strict=True):
+        run = sheaf.render(
+            "whitted",
+            "--frames",
+            ",".join(map(str, part)),
+            "--memory",
+            mib,
+            strategy=strategy,
+            size="48x27",
+            env={"LP_NUM_THREADS": threads},
+        )
         for number in part:
             assert same(run.frame(number), whole.frame(number)), f"frame {number} by {strategy}"
 
@@ -86,8 +118,9 @@ def test_a_second_run_over_the_first(sheaf):
 
 
 def test_counting_does_not_show(sheaf):
-    runs = sheaf.all({"scene": "cornell", "options": ("--count", way), "stats": True, "strategy": "hybrid"}
-                     for way in ("on", "off"))
+    runs = sheaf.all(
+        {"scene": "cornell", "options": ("--count", way), "stats": True, "strategy": "hybrid"} for way in ("on", "off")
+    )
     assert same(runs[0].frame(), runs[1].frame())
     counted, timed = (run.stats()["frames"][0] for run in runs)
     assert counted["counted"]
@@ -113,6 +146,6 @@ def test_auto_takes_no_more_memory_than_its_choice(sheaf):
 def test_lossless_compressions_hold_the_same_pixels(sheaf):
     ways = ("zip", "none", "rle", "zips", "piz")
     runs = sheaf.all({"scene": "still_life", "options": ("--compression", way), "size": "33x17"} for way in ways)
-    for way, run in zip(ways, runs):
+    for way, run in zip(ways, runs, strict=True):
         assert same(run.frame(), runs[0].frame())
         assert run.frame().header["compression"].name == f"{way.replace('none', 'no').upper()}_COMPRESSION"

@@ -7,6 +7,7 @@ import pathlib
 import shutil
 
 import pytest
+
 from rendering import SCENES, Run, Sheaf
 
 TINY = {"size": "16x9"}
@@ -31,7 +32,9 @@ def rendered(run: Run) -> list[int]:
 
 
 def warnings(run: Run) -> list[str]:
-    return [event["message"] for event in run.events() if event["event"] == "warning" and "--resume" in event["message"]]
+    return [
+        event["message"] for event in run.events() if event["event"] == "warning" and "--resume" in event["message"]
+    ]
 
 
 def again(sheaf: Sheaf, scene, out: pathlib.Path, *options: object, **settings) -> Run:
@@ -67,9 +70,19 @@ def test_a_buffer_beside_the_scene_counts(sheaf, tmp_path):
 
 @pytest.mark.parametrize(
     ("options", "named"),
-    [(["--spp", "2"], "spp"), (["--depth", "1"], "depth"), (["--cutoff", "0.1"], "cutoff"), (["--fps", "25"], "fps"),
-     (["--opaque"], "opaque"), (["--environment", "1,0,0"], "environment"), (["--aov", "Z"], "aov"),
-     (["--compression", "piz"], "compression"), (["--preview"], "no preview"), (["--filter", "box"], "filter")])
+    [
+        (["--spp", "2"], "spp"),
+        (["--depth", "1"], "depth"),
+        (["--cutoff", "0.1"], "cutoff"),
+        (["--fps", "25"], "fps"),
+        (["--opaque"], "opaque"),
+        (["--environment", "1,0,0"], "environment"),
+        (["--aov", "Z"], "aov"),
+        (["--compression", "piz"], "compression"),
+        (["--preview"], "no preview"),
+        (["--filter", "box"], "filter"),
+    ],
+)
 def test_other_settings_are_named(sheaf, options, named):
     run = sheaf.render("interpolation", *FRAMES, **TINY)
     second = again(sheaf, "interpolation", run.out, *options)
@@ -93,7 +106,9 @@ def test_the_camera_path_counts_by_its_numbers(sheaf, tmp_path):
 
 def test_what_does_not_decide_the_picture_keeps_it(sheaf):
     run = sheaf.render("interpolation", *FRAMES, **TINY)
-    second = again(sheaf, "interpolation", run.out, "--memory", 64, "--instances", "shared", "--sort", "on", strategy="hybrid")
+    second = again(
+        sheaf, "interpolation", run.out, "--memory", 64, "--instances", "shared", "--sort", "on", strategy="hybrid"
+    )
     assert rendered(second) == []
     assert warnings(second) == []
 
@@ -113,7 +128,9 @@ def test_frames_under_each_others_names_are_rendered(sheaf):
 
 
 def test_inputs_are_listed_as_the_files_have_them(sheaf, tmp_path):
-    listed = sheaf("render", SCENES / "interpolation.glb", "--out", tmp_path / "none", *FRAMES, "--size", "16x9", "--list-inputs")
+    listed = sheaf(
+        "render", SCENES / "interpolation.glb", "--out", tmp_path / "none", *FRAMES, "--size", "16x9", "--list-inputs"
+    )
     assert not (tmp_path / "none").exists()
     run = sheaf.render("interpolation", *FRAMES, **TINY)
     for line, (number, path) in zip(map(json.loads, listed.stdout.splitlines()), run.files.items(), strict=True):

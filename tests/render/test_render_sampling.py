@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Samples, the reconstruction filter and filtered textures: against the filter's own integral worked out here, and against
-many samples."""
+"""Samples, the reconstruction filter and filtered textures: against the filter's own integral worked out here, and
+against many samples."""
 
 import math
 
 import numpy as np
 import pytest
+
 from geometry_scenes import watched
 from glb import LINEAR, LINEAR_MIPMAP_LINEAR, REPEAT, Glb
 from png import rgba
@@ -26,7 +27,9 @@ def wires() -> bytes:
     points = [(x, y, 0) for corners in SLIVERS for x, y in corners]
     faces = np.arange(len(points)).reshape(-1, 3)
     shape = Shape(np.array(points, float), np.concatenate([faces, faces[:, ::-1]]))
-    return watched(glb, [glb.node("wires", mesh=glb.mesh(glb.primitive(shape, glb.unlit("white", (1, 1, 1))), "wires"))])
+    return watched(
+        glb, [glb.node("wires", mesh=glb.mesh(glb.primitive(shape, glb.unlit("white", (1, 1, 1))), "wires"))]
+    )
 
 
 def weight(x: np.ndarray, name: str) -> np.ndarray:
@@ -46,7 +49,10 @@ def filtered_coverage(name: str, fine: int = 96) -> np.ndarray:
     x, y = at / width * 4 - 2, 1 - down / height * 2
     inside = np.zeros((len(down), len(at)), bool)
     for a, b, c in SLIVERS:
-        sides = [(q[0] - p[0]) * (y[:, None] - p[1]) - (q[1] - p[1]) * (x[None, :] - p[0]) for p, q in ((a, b), (b, c), (c, a))]
+        sides = [
+            (q[0] - p[0]) * (y[:, None] - p[1]) - (q[1] - p[1]) * (x[None, :] - p[0])
+            for p, q in ((a, b), (b, c), (c, a))
+        ]
         inside |= np.all([s >= 0 for s in sides], axis=0) | np.all([s <= 0 for s in sides], axis=0)
     kernel = weight((np.arange(5 * fine) + 0.5) / fine - 2.5, name)
     kernel /= kernel.sum()
@@ -86,18 +92,34 @@ def tiled_room(mipmaps: bool, shift: float = 0.0) -> bytes:
     glb = Glb()
     random = np.random.default_rng(5)
     cells = random.integers(0, 2, (8, 8))[..., None] * np.array([200, 180, 150]) + np.array([20, 30, 40])
-    checks = glb.texture(rgba(np.kron(cells, np.ones((8, 8, 1))).astype(np.uint8)),
-                         (LINEAR, LINEAR_MIPMAP_LINEAR if mipmaps else LINEAR), (REPEAT, REPEAT))
+    checks = glb.texture(
+        rgba(np.kron(cells, np.ones((8, 8, 1))).astype(np.uint8)),
+        (LINEAR, LINEAR_MIPMAP_LINEAR if mipmaps else LINEAR),
+        (REPEAT, REPEAT),
+    )
     floor = facing_up(40, 40, uv_scale=16)
     ball = sphere(8)
     nodes = [
         glb.node("floor", mesh=glb.mesh(glb.primitive(floor, glb.unlit("floor", (1, 1, 1), texture=checks)), "floor")),
-        glb.node("mirror", mesh=glb.mesh(glb.primitive(grid((0.4, 0.02, -3), (5, 0, -2), (0, 2.4, 0)), glb.mirror("mirror")), "mirror")),
-        glb.node("ball", (-1.5, 0.8, -2), scale=(0.8,) * 3, mesh=glb.mesh(glb.primitive(ball, glb.mirror("ball")), "ball")),
-        glb.node("glass", (-3.6, 0.9, -3), scale=(0.9,) * 3, mesh=glb.mesh(glb.primitive(ball, glb.glass("glass")), "glass")),
+        glb.node(
+            "mirror",
+            mesh=glb.mesh(
+                glb.primitive(grid((0.4, 0.02, -3), (5, 0, -2), (0, 2.4, 0)), glb.mirror("mirror")), "mirror"
+            ),
+        ),
+        glb.node(
+            "ball", (-1.5, 0.8, -2), scale=(0.8,) * 3, mesh=glb.mesh(glb.primitive(ball, glb.mirror("ball")), "ball")
+        ),
+        glb.node(
+            "glass", (-3.6, 0.9, -3), scale=(0.9,) * 3, mesh=glb.mesh(glb.primitive(ball, glb.glass("glass")), "glass")
+        ),
     ]
     eye = (shift, 1.2, 3.0)
-    nodes.append(glb.node("camera", eye, quaternion(look_rotation(eye, (shift, 0.7, -3.0))), camera=glb.perspective("camera", 0.7)))
+    nodes.append(
+        glb.node(
+            "camera", eye, quaternion(look_rotation(eye, (shift, 0.7, -3.0))), camera=glb.perspective("camera", 0.7)
+        )
+    )
     glb.scene(nodes)
     return glb.bytes()
 
@@ -113,7 +135,11 @@ def rooms(sheaf_once, tmp_path_factory):
             path.write_bytes(tiled_room(mipmaps, shift))
             calls[mipmaps, shift] = {"scene": path, "size": "160x90"}
             if shift == 0:
-                calls["truth", mipmaps] = {"scene": path, "size": "160x90", "options": ("--spp", 256, "--filter", "box")}
+                calls["truth", mipmaps] = {
+                    "scene": path,
+                    "size": "160x90",
+                    "options": ("--spp", 256, "--filter", "box"),
+                }
     return dict(zip(calls, [run.frame().rgb for run in sheaf_once.all(calls.values())], strict=True))
 
 
@@ -132,7 +158,9 @@ def test_filtered_textures_are_near_what_many_samples_show(rooms):
 def test_filtered_textures_do_not_shimmer(rooms):
     """A camera that moves by a fraction of a pixel changes little."""
     for name in ("far floor", "mirror"):
-        moved = {mips: rms(parts_of(rooms[mips, 0.004])[name] - parts_of(rooms[mips, 0.0])[name]) for mips in (True, False)}
+        moved = {
+            mips: rms(parts_of(rooms[mips, 0.004])[name] - parts_of(rooms[mips, 0.0])[name]) for mips in (True, False)
+        }
         assert moved[True] < 0.5 * moved[False], (name, moved)
 
 
@@ -154,8 +182,13 @@ def test_reference_filters_alike(sheaf, tmp_path):
     """Two implementations of one text: footprints, levels and the cones behind mirrors and glass."""
     scene = tmp_path / "room.glb"
     scene.write_bytes(tiled_room(True))
-    device, reference = (run.frame().rgb for run in sheaf.all(
-        {"scene": scene, "size": "96x54", "options": ("--primary", "trace"), "strategy": strategy} for strategy in ("bvh", "reference")))
+    device, reference = (
+        run.frame().rgb
+        for run in sheaf.all(
+            {"scene": scene, "size": "96x54", "options": ("--primary", "trace"), "strategy": strategy}
+            for strategy in ("bvh", "reference")
+        )
+    )
     off = np.abs(device - reference).max(axis=2)
     assert np.quantile(off, 0.98) < 0.004  # half a code value of the levels, and half precision
     assert off.mean() < 0.002
@@ -179,8 +212,16 @@ def test_adaptive_samples_go_where_the_error_is(sheaf, tmp_path):
 
 def test_adaptive_pictures_do_not_depend_on_how_they_are_made(sheaf):
     options = [("bvh", 1024, "2"), ("bvh", 16, "1"), ("hybrid", 1024, "1"), ("hybrid", 24, "2"), ("crsh", 64, "2")]
-    runs = sheaf.all({"scene": "whitted", "size": "96x54", "strategy": strategy, "env": {"LP_NUM_THREADS": threads},
-                      "options": (*ADAPTIVE, "--memory", memory, "--aov", "Z,N,tests")} for strategy, memory, threads in options)
+    runs = sheaf.all(
+        {
+            "scene": "whitted",
+            "size": "96x54",
+            "strategy": strategy,
+            "env": {"LP_NUM_THREADS": threads},
+            "options": (*ADAPTIVE, "--memory", memory, "--aov", "Z,N,tests"),
+        }
+        for strategy, memory, threads in options
+    )
     first = runs[0].frame()
     for run in runs[1:]:
         for name in ("R", "G", "B", "A", "Z", "N.X"):
@@ -189,16 +230,30 @@ def test_adaptive_pictures_do_not_depend_on_how_they_are_made(sheaf):
 
 
 def test_adaptive_reference_is_near(sheaf):
-    device, reference = (run.frame().rgb for run in sheaf.all(
-        {"scene": "cornell", "size": "48x27", "options": ADAPTIVE, "strategy": s} for s in ("bvh", "reference")))
+    device, reference = (
+        run.frame().rgb
+        for run in sheaf.all(
+            {"scene": "cornell", "size": "48x27", "options": ADAPTIVE, "strategy": s} for s in ("bvh", "reference")
+        )
+    )
     assert np.quantile(np.abs(device - reference), 0.97) < 0.03
 
 
-@pytest.mark.parametrize(("options", "word"), [
-    (("--spp", "adaptive:0"), "spp"), (("--spp", "adaptive:nan"), "spp"), (("--spp", "adaptive:"), "spp"),
-    (("--spp", "adaptive:0.01:4"), "spp"), (("--spp", "adaptive:0.01:x"), "spp"), (("--spp", "adaptive:-1"), "spp"),
-    (("--spp", "sometimes"), "spp"), (("--spp", "1.5"), "spp"), (("--spp", ""), "spp"), (("--filter", "sinc"), "filter"),
-])
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (("--spp", "adaptive:0"), "spp"),
+        (("--spp", "adaptive:nan"), "spp"),
+        (("--spp", "adaptive:"), "spp"),
+        (("--spp", "adaptive:0.01:4"), "spp"),
+        (("--spp", "adaptive:0.01:x"), "spp"),
+        (("--spp", "adaptive:-1"), "spp"),
+        (("--spp", "sometimes"), "spp"),
+        (("--spp", "1.5"), "spp"),
+        (("--spp", ""), "spp"),
+        (("--filter", "sinc"), "filter"),
+    ],
+)
 def test_bad_sampling_is_refused_with_a_reason(sheaf, options, word):
     run = sheaf("render", "none.glb", "--out", sheaf.new_folder(), *options, code=(2, 3))
     assert word in run.stderr

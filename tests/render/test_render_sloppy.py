@@ -162,7 +162,8 @@ def test_an_attenuation_distance_of_0_absorbs_nothing(sheaf, tmp_path):
         run = picture(sheaf, tmp_path, doc, f"scene{distance}")
         assert ("attenuationDistance" in run.stderr) == (distance != "absent")
         seen.append(run.frame().rgb)
-    assert np.array_equal(seen[0], seen[2]) and np.array_equal(seen[1], seen[2])
+    assert np.array_equal(seen[0], seen[2])
+    assert np.array_equal(seen[1], seen[2])
     assert np.allclose(seen[0][4, 4], COLOUR, atol=2e-3)
 
 
@@ -198,7 +199,8 @@ def test_other_files_are_named(sheaf, tmp_path, name):
     data, kind = OTHERS[name]
     (tmp_path / name).write_bytes(data)
     run = sheaf("render", tmp_path / name, "--out", tmp_path / "out", code=3)
-    assert kind in run.stderr and len(run.stderr.splitlines()) == 1
+    assert kind in run.stderr
+    assert len(run.stderr.splitlines()) == 1
 
 
 @pytest.mark.parametrize(
@@ -210,7 +212,8 @@ def test_a_long_option_is_cut_in_the_error(sheaf, tmp_path, option, text):
     scene.write_text(json.dumps(document()))
     run = sheaf("render", scene, "--out", tmp_path / "out", option, text, code=(2, 3))
     assert len(run.stderr.splitlines()) == 1
-    assert text[:150] in run.stderr and text[:201] not in run.stderr
+    assert text[:150] in run.stderr
+    assert text[:201] not in run.stderr
 
 
 # ---- camera paths of Nerfstudio ----

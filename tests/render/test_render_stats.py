@@ -4,11 +4,14 @@
 import json
 
 import pytest
+
 from rendering import SCENES
 
 KINDS = {"primary", "shadow", "reflection", "refraction"}
-STAGES = {"animate", "objects", "raster", "generate", "hash", "compress", "sort", "decompress", "rays_hierarchy", "traverse",
-          "compact", "intersect", "shade", "resolve", "write"}
+STAGES = {
+    "animate", "objects", "raster", "generate", "hash", "compress", "sort", "decompress", "rays_hierarchy",
+    "traverse", "compact", "intersect", "shade", "resolve", "write",
+}  # fmt: skip
 SIZE = (64, 36)
 
 
@@ -16,8 +19,10 @@ SIZE = (64, 36)
 def cornell(sheaf_once) -> dict:
     """The stats of one small picture by each strategy."""
     names = ("brute", "bvh", "hybrid", "crsh", "rsh", "frustum", "classify")
-    runs = sheaf_once.all({"scene": "cornell", "strategy": name, "stats": True, "options": ("--spp", 2)} for name in names)
-    return {name: run.stats() for name, run in zip(names, runs)}
+    runs = sheaf_once.all(
+        {"scene": "cornell", "strategy": name, "stats": True, "options": ("--spp", 2)} for name in names
+    )
+    return {name: run.stats() for name, run in zip(names, runs, strict=True)}
 
 
 @pytest.mark.parametrize("strategy", ["brute", "bvh", "hybrid", "crsh", "rsh", "frustum", "classify"])
@@ -33,7 +38,9 @@ def test_schema(cornell, strategy):
     assert stats["scene"]["meshes"] == 10
     assert stats["scene"]["lights"] == 1
     (frame,) = stats["frames"]
-    assert {"frame", "time_s", "wall_ms", "peak_device_mib", "stages", "rays", "hits", "tests", "generations"} <= frame.keys()
+    assert {
+        "frame", "time_s", "wall_ms", "peak_device_mib", "stages", "rays", "hits", "tests", "generations",
+    } <= frame.keys()  # fmt: skip
     assert set(frame["stages"]) <= STAGES
     assert {"raster", "generate", "shade", "resolve", "write"} <= set(frame["stages"])
     assert all(ms >= 0 for ms in frame["stages"].values())
@@ -50,8 +57,9 @@ def test_rays_are_the_same_whatever_finds_their_hits(cornell):
     for stats in cornell.values():
         frame = stats["frames"][0]
         assert frame["rays"] == first["rays"]
-        assert {k: v for k, v in frame["hits"].items() if k != "shadow"} == {k: v for k, v in first["hits"].items()
-                                                                           if k != "shadow"}
+        assert {k: v for k, v in frame["hits"].items() if k != "shadow"} == {
+            k: v for k, v in first["hits"].items() if k != "shadow"
+        }
         assert frame["tests"]["brute_force"] == sum(frame["rays"].values()) * 2504
 
 
@@ -103,7 +111,8 @@ def test_totals_are_sums(sheaf):
         assert totals["hits"][kind] == sum(f["hits"][kind] for f in frames)
     assert totals["wall_ms"] == pytest.approx(sum(f["wall_ms"] for f in frames))
     assert totals["rays_per_second"] == pytest.approx(
-        sum(sum(f["rays"].values()) for f in frames) / (totals["wall_ms"] / 1000))
+        sum(sum(f["rays"].values()) for f in frames) / (totals["wall_ms"] / 1000)
+    )
     for stage, ms in totals["stages"].items():
         assert ms == pytest.approx(sum(f["stages"].get(stage, 0) for f in frames)), stage
     assert {"skins", "morphs", "moving nodes"} <= set(stats["scene"]["features"])
@@ -166,8 +175,15 @@ def test_ignored_extensions_are_named(sheaf, tmp_path):
     text += b" " * (-len(text) % 4)
     rest = data[20 + length :]
     path = tmp_path / "sparkle.glb"
-    path.write_bytes(b"glTF" + (2).to_bytes(4, "little") + (20 + len(text) + len(rest)).to_bytes(4, "little")
-                     + len(text).to_bytes(4, "little") + b"JSON" + text + rest)
+    path.write_bytes(
+        b"glTF"
+        + (2).to_bytes(4, "little")
+        + (20 + len(text) + len(rest)).to_bytes(4, "little")
+        + len(text).to_bytes(4, "little")
+        + b"JSON"
+        + text
+        + rest
+    )
     run = sheaf.render(path, stats=True, size="16x9")
     assert "VENDOR_sparkle" in run.stderr
     assert "VENDOR_sparkle" in json.dumps(run.stats()["scene"])

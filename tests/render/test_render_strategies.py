@@ -5,11 +5,22 @@ import json
 
 import numpy as np
 import pytest
+
 from rendering import SCENE_NAMES, Sheaf
 
-STRATEGIES = {"bvh": (), "hybrid": (), "hybrid sorted": ("--sort", "on"), "hybrid unsorted": ("--sort", "off"), "crsh": (),
-              "rsh": (), "frustum": (), "frustum unsorted": ("--sort", "off"), "classify": (), "brute": (),
-              "rayquery": ()}
+STRATEGIES = {
+    "bvh": (),
+    "hybrid": (),
+    "hybrid sorted": ("--sort", "on"),
+    "hybrid unsorted": ("--sort", "off"),
+    "crsh": (),
+    "rsh": (),
+    "frustum": (),
+    "frustum unsorted": ("--sort", "off"),
+    "classify": (),
+    "brute": (),
+    "rayquery": (),
+}
 FRAME = 29  # of an animated scene, one in the middle
 OPTIONS = ("--frames", FRAME, "--aov", "id")
 
@@ -23,9 +34,11 @@ def strategies(sheaf_once) -> dict:
 
 
 def render_all(sheaf: Sheaf, scene: str, strategies: dict, *more: object, size="64x36") -> dict:
-    calls = [{"scene": scene, "options": (*OPTIONS, *options, *more), "strategy": name.split()[0], "size": size}
-             for name, options in strategies.items()]
-    return {name: run.frame(FRAME) for name, run in zip(strategies, sheaf.all(calls))}
+    calls = [
+        {"scene": scene, "options": (*OPTIONS, *options, *more), "strategy": name.split()[0], "size": size}
+        for name, options in strategies.items()
+    ]
+    return {name: run.frame(FRAME) for name, run in zip(strategies, sheaf.all(calls), strict=True)}
 
 
 @pytest.mark.parametrize("scene", SCENE_NAMES)
@@ -36,7 +49,9 @@ def test_every_strategy_gives_the_same_pixels(sheaf, strategies, scene):
         assert picture.channels.keys() == first.channels.keys()
         for channel, values in picture.channels.items():
             differs = np.argwhere(values.view(np.uint8) != first.channels[channel].view(np.uint8))
-            assert not len(differs), f"{name} against bvh: {channel} at (row, byte) {differs[0]} and {len(differs)} more"
+            assert not len(differs), (
+                f"{name} against bvh: {channel} at (row, byte) {differs[0]} and {len(differs)} more"
+            )
     if scene not in ("empty", "no_triangles"):
         assert len(np.unique(first.rgba.reshape(-1, 4), axis=0)) > 1 or scene in ("slab", "prism")
 
@@ -58,10 +73,18 @@ def test_vectors_of_any_width_give_the_same_pixels(sheaf, sheaf_once, scene):
         pytest.skip("the width of a GPU's vectors cannot be chosen")
     names = ("bvh", "hybrid", "crsh", "frustum", "classify")
     cases = [(name, bits) for name in names for bits in (256, 128, 512)]
-    calls = [{"scene": scene, "options": (*OPTIONS, "--depth", 3), "strategy": name, "size": "160x90",
-              "env": {"LP_NATIVE_VECTOR_WIDTH": str(bits), "LP_NUM_THREADS": "1"}} for name, bits in cases]
+    calls = [
+        {
+            "scene": scene,
+            "options": (*OPTIONS, "--depth", 3),
+            "strategy": name,
+            "size": "160x90",
+            "env": {"LP_NATIVE_VECTOR_WIDTH": str(bits), "LP_NUM_THREADS": "1"},
+        }
+        for name, bits in cases
+    ]
     pictures = [run.frame(FRAME).rgba.view(np.uint16) for run in sheaf.all(calls)]
-    for (name, bits), picture in zip(cases, pictures):
+    for (name, bits), picture in zip(cases, pictures, strict=True):
         differ = int((picture != pictures[0]).any(-1).sum())
         assert differ == 0, f"{name}, {bits} bits: {differ} pixels"
 

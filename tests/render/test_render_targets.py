@@ -10,6 +10,7 @@ import threading
 
 import numpy as np
 import pytest
+
 from rendering import PATIENCE, program, read_exr, scene_path
 
 TINY = {"size": "16x9"}
@@ -93,8 +94,16 @@ def test_standard_output_takes_stats(tmp_path, name):
     with log.open("wb") as file:
         file.write(b"before\n")
         file.flush()
-        subprocess.run([program(), "render", scene_path("unlit"), "--out", tmp_path / "out", "--size", "16x9", "--strategy",
-                        "bvh", "--stats", target], stdout=file, timeout=PATIENCE, check=True)
+        subprocess.run(
+            [
+                program(),
+                "render",
+                scene_path("unlit"),
+                "--out",
+                tmp_path / "out",
+                "--size", "16x9", "--strategy", "bvh", "--stats", target, ], stdout=file, timeout=PATIENCE,
+                check=True,
+        )  # fmt: skip
         file.write(b"after\n")
     first, *document, last = log.read_text().splitlines()
     assert (first, last) == ("before", "after")
@@ -111,9 +120,16 @@ def test_a_device_takes_stats(sheaf, tmp_path):
 def test_a_pipe_whose_reader_is_gone_is_an_error(tmp_path):
     ours, theirs = os.pipe()
     os.close(ours)
-    done = subprocess.run([program(), "render", scene_path("unlit"), "--out", tmp_path / "out", "--size", "16x9", "--strategy",
-                           "bvh", "--stats", f"/dev/fd/{theirs}"], pass_fds=[theirs], capture_output=True, text=True,
-                          timeout=PATIENCE, check=False)
+    done = subprocess.run(
+        [
+            program(),
+            "render",
+            scene_path("unlit"),
+            "--out",
+            tmp_path / "out",
+            "--size", "16x9", "--strategy", "bvh", "--stats", f"/dev/fd/{theirs}", ], pass_fds=[theirs],
+            capture_output=True, text=True, timeout=PATIENCE, check=False,
+    )  # fmt: skip
     os.close(theirs)
     assert done.returncode == 6
     assert done.stderr == f"sheaf: /dev/fd/{theirs}: cannot write: Broken pipe\n"

@@ -17,8 +17,10 @@ def spheres(count=100, frequency=16, seed=1, apart=False, still=False, glass=0.1
     ball = sphere(frequency)
     side = math.ceil(math.sqrt(count))
     shared = glb.primitive(ball, 0)
-    materials = [glb.material(f"matte {k}", c, roughness=0.8) for k, c in enumerate(
-        ((0.7, 0.2, 0.15), (0.15, 0.5, 0.2), (0.15, 0.25, 0.65), (0.75, 0.6, 0.2)))]
+    materials = [
+        glb.material(f"matte {k}", c, roughness=0.8)
+        for k, c in enumerate(((0.7, 0.2, 0.15), (0.15, 0.5, 0.2), (0.15, 0.25, 0.65), (0.75, 0.6, 0.2)))
+    ]
     shiny, clear = glb.mirror("mirror", (0.92, 0.92, 0.95)), glb.glass("glass", 1.5, 1)
     by_material, nodes = {}, []
     for k in range(count):
@@ -28,8 +30,11 @@ def spheres(count=100, frequency=16, seed=1, apart=False, still=False, glass=0.1
             own = glb.primitive(ball, material) if apart else shared | {"material": material}
             by_material[material] = glb.mesh(own, f"ball {k}")
         radius = 0.25 + 0.2 * random.random()
-        place = ((k % side - (side - 1) / 2) * 1.1, radius + 0.6 * random.random() + 0.01,
-                 (k // side - (side - 1) / 2) * 1.1)
+        place = (
+            (k % side - (side - 1) / 2) * 1.1,
+            radius + 0.6 * random.random() + 0.01,
+            (k // side - (side - 1) / 2) * 1.1,
+        )
         nodes.append(glb.node(f"ball {k}", place, scale=(radius,) * 3, mesh=by_material[material]))
     ring = glb.node("merry-go-round", children=nodes)
     ground = glb.mesh(glb.primitive(facing_up(4 * side, 4 * side), glb.material("ground", (0.5, 0.5, 0.5))), "ground")
@@ -51,8 +56,10 @@ def soup(triangles=10000, seed=1, ratio=100.0) -> bytes:
     sizes = 0.5 * ratio ** -random.random((triangles, 1, 1))
     points = (centres + sizes * random.uniform(-1, 1, (triangles, 3, 3)) * 0.5).reshape(-1, 3)
     faces = np.arange(3 * triangles).reshape(-1, 3)
-    shapes = {"matte": (glb.material("matte", (0.6, 0.5, 0.4), doubleSided=True), faces[triangles // 10 :]),
-              "mirror": (glb.mirror("mirror", (0.9, 0.9, 0.9)), faces[: triangles // 10])}
+    shapes = {
+        "matte": (glb.material("matte", (0.6, 0.5, 0.4), doubleSided=True), faces[triangles // 10 :]),
+        "mirror": (glb.mirror("mirror", (0.9, 0.9, 0.9)), faces[: triangles // 10]),
+    }
     nodes = []
     for name, (material, part) in shapes.items():
         if len(part):

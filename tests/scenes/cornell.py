@@ -16,8 +16,12 @@ def build() -> bytes:
     red = glb.material("red", (0.63, 0.065, 0.05))
     green = glb.material("green", (0.14, 0.45, 0.09))
     blue = glb.material("blue", (0.15, 0.3, 0.65))
-    lamp = glb.material("lamp", (0, 0, 0), emissiveFactor=[1, 1, 0.85],
-                        extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 6}})
+    lamp = glb.material(
+        "lamp",
+        (0, 0, 0),
+        emissiveFactor=[1, 1, 0.85],
+        extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 6}},
+    )
     mirror = glb.mirror("mirror", (0.9, 0.9, 0.92))
     glass = glb.glass("glass", 1.5, thickness=0.6, colour=(0.55, 0.85, 0.95), distance=0.8)
 

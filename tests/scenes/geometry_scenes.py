@@ -12,7 +12,7 @@ from shapes import box, facing_z, turn
 def watched(glb: Glb, nodes, xmag=2.0, ymag=1.0, scene="scene") -> bytes:
     """Adds the camera that most small scenes share and finishes the file."""
     eye = glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", xmag, ymag))
-    glb.scene(list(nodes) + [eye], scene)
+    glb.scene([*list(nodes), eye], scene)
     return glb.bytes()
 
 
@@ -27,10 +27,15 @@ def strips_fans() -> bytes:
         item = {"attributes": {"POSITION": glb.attribute(points, bounds=True)}, "mode": mode, "material": material}
         return item | ({} if indices is None else {"indices": glb.indices(indices)})
 
-    red, green, blue = (glb.unlit(n, c) for n, c in
-                        (("red", (1, 0, 0)), ("green", (0, 1, 0)), ("blue", (0, 0, 1))))
-    mesh = glb.mesh([primitive(strip, TRIANGLE_STRIP, red), primitive(fan, TRIANGLE_FAN, green),
-                     primitive(ribbon, TRIANGLE_STRIP, blue, [0, 1, 2, 3, 3, 1, 1, 4, 3, 5])], "modes")
+    red, green, blue = (glb.unlit(n, c) for n, c in (("red", (1, 0, 0)), ("green", (0, 1, 0)), ("blue", (0, 0, 1))))
+    mesh = glb.mesh(
+        [
+            primitive(strip, TRIANGLE_STRIP, red),
+            primitive(fan, TRIANGLE_FAN, green),
+            primitive(ribbon, TRIANGLE_STRIP, blue, [0, 1, 2, 3, 3, 1, 1, 4, 3, 5]),
+        ],
+        "modes",
+    )
     return watched(glb, [glb.node("modes", mesh=mesh)])
 
 
@@ -58,8 +63,11 @@ def interleaved() -> bytes:
         if name == "POSITION":
             item |= {"min": numbers(shape.positions.min(0)), "max": numbers(shape.positions.max(0))}
         found[name] = glb.add("accessors", item)
-    primitive = {"attributes": found, "indices": glb.indices(shape.triangles),
-                 "material": glb.unlit("orange", (1, 0.5, 0))}
+    primitive = {
+        "attributes": found,
+        "indices": glb.indices(shape.triangles),
+        "material": glb.unlit("orange", (1, 0.5, 0)),
+    }
     return watched(glb, [glb.node("box", mesh=glb.mesh(primitive, "box"))])
 
 
@@ -74,17 +82,29 @@ def sparse() -> bytes:
     accessor["sparse"] = _sparse_part(glb, [middle], [(0, 0, 1)])
     accessor["max"] = [1, 1, 1]
     corners = [(-1.75, -0.5, 0), (-1.25, -0.5, 0), (-1.75, 0.5, 0)]
-    position = glb.add("accessors", {"componentType": 5126, "count": 3, "type": "VEC3", "min": [-1.75, -0.5, 0],
-                                     "max": [-1.25, 0.5, 0], "sparse": _sparse_part(glb, [0, 1, 2], corners)})
+    position = glb.add(
+        "accessors",
+        {
+            "componentType": 5126,
+            "count": 3,
+            "type": "VEC3",
+            "min": [-1.75, -0.5, 0],
+            "max": [-1.25, 0.5, 0],
+            "sparse": _sparse_part(glb, [0, 1, 2], corners),
+        },
+    )
     lone = {"attributes": {"POSITION": position}, "material": glb.unlit("yellow", (1, 1, 0))}
-    return watched(glb, [glb.node("grid", mesh=glb.mesh(primitive, "grid")),
-                         glb.node("triangle", mesh=glb.mesh(lone, "triangle"))])
+    return watched(
+        glb, [glb.node("grid", mesh=glb.mesh(primitive, "grid")), glb.node("triangle", mesh=glb.mesh(lone, "triangle"))]
+    )
 
 
 def _sparse_part(glb: Glb, places, values) -> dict:
-    return {"count": len(places),
-            "indices": {"bufferView": glb.view(np.asarray(places, np.uint16).tobytes()), "componentType": 5123},
-            "values": {"bufferView": glb.view(np.asarray(values, np.float32).tobytes())}}
+    return {
+        "count": len(places),
+        "indices": {"bufferView": glb.view(np.asarray(places, np.uint16).tobytes()), "componentType": 5123},
+        "values": {"bufferView": glb.view(np.asarray(values, np.float32).tobytes())},
+    }
 
 
 def normalised() -> bytes:
@@ -92,11 +112,15 @@ def normalised() -> bytes:
     glb = Glb()
     quad = facing_z(2, 2, uv_scale=1)
     texture = glb.texture(rgba([[(255, 255, 255), (255, 0, 0)], [(0, 255, 0), (0, 0, 255)]]))
-    primitive = {"attributes": {
-        "POSITION": glb.attribute(quad.positions, bounds=True),
-        "TEXCOORD_0": glb.attribute(np.round(quad.uvs * 65535), "u16", normalized=True),
-        "COLOR_0": glb.attribute([(51, 102, 255)] * 4, "u8", normalized=True)},
-        "indices": glb.indices(quad.triangles), "material": glb.unlit("quarters", (1, 1, 1), texture=texture)}
+    primitive = {
+        "attributes": {
+            "POSITION": glb.attribute(quad.positions, bounds=True),
+            "TEXCOORD_0": glb.attribute(np.round(quad.uvs * 65535), "u16", normalized=True),
+            "COLOR_0": glb.attribute([(51, 102, 255)] * 4, "u8", normalized=True),
+        },
+        "indices": glb.indices(quad.triangles),
+        "material": glb.unlit("quarters", (1, 1, 1), texture=texture),
+    }
     return watched(glb, [glb.node("quad", mesh=glb.mesh(primitive, "quad"))])
 
 
@@ -105,10 +129,14 @@ def quantised() -> bytes:
     glb = Glb()
     glb.uses("KHR_mesh_quantization", required=True)
     shape = box((2, 2, 2))
-    primitive = {"attributes": {
-        "POSITION": glb.attribute(shape.positions * 32767, "i16", normalized=True, bounds=True),
-        "NORMAL": glb.attribute(shape.normals * 127, "i8", normalized=True)},
-        "indices": glb.indices(shape.triangles), "material": glb.unlit("green", (0.1, 0.8, 0.2))}
+    primitive = {
+        "attributes": {
+            "POSITION": glb.attribute(shape.positions * 32767, "i16", normalized=True, bounds=True),
+            "NORMAL": glb.attribute(shape.normals * 127, "i8", normalized=True),
+        },
+        "indices": glb.indices(shape.triangles),
+        "material": glb.unlit("green", (0.1, 0.8, 0.2)),
+    }
     return watched(glb, [glb.node("box", scale=(0.5, 0.75, 1), mesh=glb.mesh(primitive, "box"))])
 
 
@@ -116,12 +144,17 @@ def negative_scale() -> bytes:
     """The same wedge twice, once mirrored in x: lit from +Z, both must look lit, as mirror images."""
     glb = Glb()
     points = [(0, -0.5, 0), (1, -0.5, 0.5), (1, 0.5, 0.5), (0, 0.5, 0)]
-    primitive = {"attributes": {"POSITION": glb.attribute(points, bounds=True)},
-                 "indices": glb.indices([(0, 1, 2), (0, 2, 3)]), "material": glb.material("grey", (0.5, 0.5, 0.5))}
+    primitive = {
+        "attributes": {"POSITION": glb.attribute(points, bounds=True)},
+        "indices": glb.indices([(0, 1, 2), (0, 2, 3)]),
+        "material": glb.material("grey", (0.5, 0.5, 0.5)),
+    }
     mesh = glb.mesh(primitive, "wedge")
     sun = glb.light("sun", "directional", 3)
-    return watched(glb, [glb.node("right", (0.25, 0, 0), mesh=mesh),
-                         glb.node("left", (-0.25, 0, 0), scale=(-1, 1, 1), mesh=mesh), sun])
+    return watched(
+        glb,
+        [glb.node("right", (0.25, 0, 0), mesh=mesh), glb.node("left", (-0.25, 0, 0), scale=(-1, 1, 1), mesh=mesh), sun],
+    )
 
 
 def hierarchy() -> bytes:
@@ -129,8 +162,14 @@ def hierarchy() -> bytes:
     glb = Glb()
     quad = glb.mesh(glb.primitive(facing_z(0.25, 0.25), glb.unlit("magenta", (1, 0, 1))), "quad")
     leaf = glb.node("leaf", (1, 0, 0), mesh=quad)
-    matrix = glb.add("nodes", {"name": "matrix", "children": [leaf],  # columns: scale 2 in x, then move by (0, 0.5, 0)
-                               "matrix": [2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1]})
+    matrix = glb.add(
+        "nodes",
+        {
+            "name": "matrix",
+            "children": [leaf],  # columns: scale 2 in x, then move by (0, 0.5, 0)
+            "matrix": [2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1],
+        },
+    )
     turned = glb.node("turned", (-0.5, 0, 0), turn((0, 0, 1), 90), (0.5, 0.5, 0.5), children=[matrix])
     return watched(glb, [glb.node("root", (1, -0.5, -1), children=[turned])])
 
@@ -146,5 +185,10 @@ def instanced() -> bytes:
     return watched(glb, [node])
 
 
-SCENES = {f.__name__: f for f in (strips_fans, non_indexed, interleaved, sparse, normalised, quantised,
-                                  negative_scale, hierarchy, instanced)}
+SCENES = {
+    f.__name__: f
+    for f in (
+        strips_fans, non_indexed, interleaved, sparse, normalised, quantised, negative_scale, hierarchy,
+        instanced,
+    )
+}  # fmt: skip

@@ -7,8 +7,14 @@ import struct
 
 import numpy as np
 
-COMPONENTS = {"i8": (5120, np.int8), "u8": (5121, np.uint8), "i16": (5122, np.int16),
-              "u16": (5123, np.uint16), "u32": (5125, np.uint32), "f32": (5126, np.float32)}
+COMPONENTS = {
+    "i8": (5120, np.int8),
+    "u8": (5121, np.uint8),
+    "i16": (5122, np.int16),
+    "u16": (5123, np.uint16),
+    "u32": (5125, np.uint32),
+    "f32": (5126, np.float32),
+}
 SHAPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN = 4, 5, 6
@@ -75,8 +81,12 @@ class Glb:
             stride = row + 4 - row % 4
             stored = np.zeros((len(array), stride // array.dtype.itemsize), dtype)
             stored[:, : array.shape[1]] = array
-        item = {"bufferView": self.view(stored.tobytes(), target, stride), "componentType": code,
-                "count": len(array), "type": SHAPES[array.shape[1]]}
+        item = {
+            "bufferView": self.view(stored.tobytes(), target, stride),
+            "componentType": code,
+            "count": len(array),
+            "type": SHAPES[array.shape[1]],
+        }
         if normalized:
             item["normalized"] = True
         if bounds:
@@ -111,10 +121,14 @@ class Glb:
         return self.add("meshes", ({"name": name} if name else {}) | {"primitives": primitives} | more)
 
     # ---- materials ----
-    def material(self, name, base=(1, 1, 1, 1), metallic=0.0, roughness=1.0, extensions=None, texture=None,
-                 **more) -> int:
-        pbr = {"baseColorFactor": numbers(tuple(base) + (1,) * (4 - len(base))),
-               "metallicFactor": number(metallic), "roughnessFactor": number(roughness)}
+    def material(
+        self, name, base=(1, 1, 1, 1), metallic=0.0, roughness=1.0, extensions=None, texture=None, **more
+    ) -> int:
+        pbr = {
+            "baseColorFactor": numbers(tuple(base) + (1,) * (4 - len(base))),
+            "metallicFactor": number(metallic),
+            "roughnessFactor": number(roughness),
+        }
         if texture is not None:
             pbr["baseColorTexture"] = texture if isinstance(texture, dict) else {"index": texture}
         item = {"name": name, "pbrMetallicRoughness": pbr} | more
@@ -127,8 +141,10 @@ class Glb:
 
     def glass(self, name, ior=1.5, thickness=1.0, base=(1, 1, 1, 1), colour=None, distance=None) -> int:
         """Smooth clear glass: closed and refracting where thickness > 0, else thin-walled."""
-        extensions = {"KHR_materials_transmission": {"transmissionFactor": 1},
-                      "KHR_materials_ior": {"ior": number(ior)}}
+        extensions = {
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_ior": {"ior": number(ior)},
+        }
         if thickness > 0:
             volume = {"thicknessFactor": number(thickness)}
             if colour is not None:
@@ -141,8 +157,9 @@ class Glb:
 
     def texture(self, png: bytes, filters=(NEAREST, NEAREST), wrap=(REPEAT, REPEAT)) -> int:
         image = self.add("images", {"bufferView": self.view(png), "mimeType": "image/png"})
-        sampler = self.add("samplers", {"magFilter": filters[0], "minFilter": filters[1],
-                                        "wrapS": wrap[0], "wrapT": wrap[1]})
+        sampler = self.add(
+            "samplers", {"magFilter": filters[0], "minFilter": filters[1], "wrapS": wrap[0], "wrapT": wrap[1]}
+        )
         return self.add("textures", {"source": image, "sampler": sampler})
 
     # ---- nodes ----
@@ -158,7 +175,7 @@ class Glb:
         return self.add("cameras", {"name": name, "type": "perspective", "perspective": lens})
 
     def orthographic(self, name, xmag, ymag, near=0.01, far=100.0) -> int:
-        lens = dict(zip(("xmag", "ymag", "znear", "zfar"), map(number, (xmag, ymag, near, far))))
+        lens = dict(zip(("xmag", "ymag", "znear", "zfar"), map(number, (xmag, ymag, near, far)), strict=True))
         return self.add("cameras", {"name": name, "type": "orthographic", "orthographic": lens})
 
     def light(self, name, kind, intensity, color=(1, 1, 1), placed=None, **more) -> int:
@@ -188,8 +205,10 @@ class Glb:
     def skin(self, joints, inverse_bind, name=None) -> int:
         """`inverse_bind`: (joints, 4, 4) matrices as written on paper; glTF stores columns."""
         columns = np.swapaxes(np.asarray(inverse_bind, dtype=np.float64), 1, 2).reshape(-1, 16)
-        return self.add("skins", ({"name": name} if name else {}) | {
-            "joints": list(joints), "inverseBindMatrices": self.accessor(columns)})
+        return self.add(
+            "skins",
+            ({"name": name} if name else {}) | {"joints": list(joints), "inverseBindMatrices": self.accessor(columns)},
+        )
 
     # ---- file ----
     def bytes(self) -> bytes:

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Makes the scenes and camera paths of this folder. Needs Python 3.10 and NumPy.
 
-  make_scenes.py                 write every committed file anew
-  make_scenes.py --check         say which committed files differ from what would be written; exit 1 if any does
-  make_scenes.py spheres|soup --out FILE.glb ...   a scene of any size for measurements
+make_scenes.py                 write every committed file anew
+make_scenes.py --check         say which committed files differ from what would be written; exit 1 if any does
+make_scenes.py spheres|soup --out FILE.glb ...   a scene of any size for measurements
 """
 
 import argparse
@@ -44,10 +44,12 @@ def write_all() -> int:
 
 def check() -> int:
     files = committed()
-    wrong = [name for name, build in files.items()
-             if not (HERE / name).is_file() or (HERE / name).read_bytes() != build()]
-    strays = [path.relative_to(HERE).as_posix() for pattern in ("*.glb", "cameras/*.json")
-              for path in HERE.glob(pattern)]
+    wrong = [
+        name for name, build in files.items() if not (HERE / name).is_file() or (HERE / name).read_bytes() != build()
+    ]
+    strays = [
+        path.relative_to(HERE).as_posix() for pattern in ("*.glb", "cameras/*.json") for path in HERE.glob(pattern)
+    ]
     wrong += [name for name in strays if name not in files]
     for name in sorted(wrong):
         print(f"{name}: missing, out of date, or made by nothing here", file=sys.stderr)

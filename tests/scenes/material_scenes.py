@@ -46,7 +46,7 @@ def uv_sets() -> bytes:
             primitive["attributes"]["TEXCOORD_1"] = primitive["attributes"]["TEXCOORD_0"]
             primitive["attributes"]["TEXCOORD_0"] = glb.attribute(np.full((4, 2), 0.25))
         nodes.append(glb.node(name, (x, 0, 0), mesh=glb.mesh(primitive, name)))
-    return watched(glb, nodes + [unlit_by_behind(glb)])
+    return watched(glb, [*nodes, unlit_by_behind(glb)])
 
 
 def samplers() -> bytes:
@@ -67,9 +67,10 @@ def samplers() -> bytes:
 def vertex_colours() -> bytes:
     glb = Glb()
     points = [(-1, -0.75, 0), (1, -0.75, 0), (0, 0.75, 0)]
-    primitive = {"attributes": {"POSITION": glb.attribute(points, bounds=True),
-                                "COLOR_0": glb.attribute(np.eye(3))},
-                 "material": glb.unlit("white", (1, 1, 1))}
+    primitive = {
+        "attributes": {"POSITION": glb.attribute(points, bounds=True), "COLOR_0": glb.attribute(np.eye(3))},
+        "material": glb.unlit("white", (1, 1, 1)),
+    }
     return watched(glb, [glb.node("triangle", mesh=glb.mesh(primitive, "triangle"))])
 
 
@@ -80,8 +81,7 @@ def alpha_mask() -> bytes:
     mask = glb.unlit("mask", (1, 0, 0), texture=glb.texture(alphas), alphaMode="MASK", alphaCutoff=0.5)
     wall = glb.material("wall", (0, 0, 0.5))
     sun = glb.light("sun", "directional", 3.5, placed={"rotation": turn((0, 1, 0), 45)})
-    return watched(glb, [quad_of(glb, mask, "mask", 1, translation=(0, 0, 1)),
-                         quad_of(glb, wall, "wall", 4), sun])
+    return watched(glb, [quad_of(glb, mask, "mask", 1, translation=(0, 0, 1)), quad_of(glb, wall, "wall", 4), sun])
 
 
 def alpha_blend() -> bytes:
@@ -89,9 +89,14 @@ def alpha_blend() -> bytes:
     red = glb.unlit("red", (1, 0, 0, 0.25), alphaMode="BLEND")
     green = glb.unlit("green", (0, 1, 0, 0.5), alphaMode="BLEND")
     blue = glb.unlit("blue", (0, 0, 1))
-    return watched(glb, [quad_of(glb, red, "red", 1, translation=(-0.25, 0, 2)),
-                         quad_of(glb, green, "green", 1, translation=(0.25, 0, 1)),
-                         quad_of(glb, blue, "blue", 4)])
+    return watched(
+        glb,
+        [
+            quad_of(glb, red, "red", 1, translation=(-0.25, 0, 2)),
+            quad_of(glb, green, "green", 1, translation=(0.25, 0, 1)),
+            quad_of(glb, blue, "blue", 4),
+        ],
+    )
 
 
 def unlit() -> bytes:
@@ -112,9 +117,14 @@ def double_sided() -> bytes:
     away = turn((0, 1, 0), 180)
     both = glb.material("both", (0.5, 0.5, 0.5), doubleSided=True)
     one = glb.material("one", (0.5, 0.5, 0.5))
-    return watched(glb, [quad_of(glb, both, "both", 1, translation=(-0.75, 0, 0), rotation=away),
-                         quad_of(glb, one, "one", 1, translation=(0.75, 0, 0), rotation=away),
-                         glb.light("sun", "directional", 3)])
+    return watched(
+        glb,
+        [
+            quad_of(glb, both, "both", 1, translation=(-0.75, 0, 0), rotation=away),
+            quad_of(glb, one, "one", 1, translation=(0.75, 0, 0), rotation=away),
+            glb.light("sun", "directional", 3),
+        ],
+    )
 
 
 def normal_map() -> bytes:
@@ -124,9 +134,14 @@ def normal_map() -> bytes:
     ior = {"KHR_materials_ior": {"ior": 1}}  # no specular reflection at all at normal incidence
     leaned = glb.material("leaned", (0.5, 0.5, 0.5), extensions=ior, normalTexture={"index": leaning})
     plain = glb.material("plain", (0.5, 0.5, 0.5), extensions=ior)
-    return watched(glb, [quad_of(glb, leaned, "leaned", 1, translation=(-0.75, 0, 0)),
-                         quad_of(glb, plain, "plain", 1, translation=(0.75, 0, 0)),
-                         glb.light("sun", "directional", np.pi)])
+    return watched(
+        glb,
+        [
+            quad_of(glb, leaned, "leaned", 1, translation=(-0.75, 0, 0)),
+            quad_of(glb, plain, "plain", 1, translation=(0.75, 0, 0)),
+            glb.light("sun", "directional", np.pi),
+        ],
+    )
 
 
 def thin_glass() -> bytes:
@@ -141,9 +156,11 @@ def cameras() -> bytes:
     """Three cameras on one box whose sides are red (+X), green (+Y) and blue (+Z)."""
     glb = Glb()
     nodes = []
-    for name, colour, axis, angle, at in (("front", (0, 0, 1), (0, 1, 0), 0, (0, 0, 0.5)),
-                                          ("right", (1, 0, 0), (0, 1, 0), 90, (0.5, 0, 0)),
-                                          ("top", (0, 1, 0), (1, 0, 0), -90, (0, 0.5, 0))):
+    for name, colour, axis, angle, at in (
+        ("front", (0, 0, 1), (0, 1, 0), 0, (0, 0, 0.5)),
+        ("right", (1, 0, 0), (0, 1, 0), 90, (0.5, 0, 0)),
+        ("top", (0, 1, 0), (1, 0, 0), -90, (0, 0.5, 0)),
+    ):
         material = glb.unlit(name, colour)
         nodes.append(quad_of(glb, material, name + " side", 1, translation=at, rotation=turn(axis, angle)))
     lens = glb.perspective("lens", 2 * np.arctan(0.25), near=0.1)
@@ -155,5 +172,10 @@ def cameras() -> bytes:
     return glb.bytes()
 
 
-SCENES = {f.__name__: f for f in (uv_sets, samplers, vertex_colours, alpha_mask, alpha_blend, unlit,
-                                  emissive_strength, double_sided, normal_map, thin_glass, cameras)}
+SCENES = {
+    f.__name__: f
+    for f in (
+        uv_sets, samplers, vertex_colours, alpha_mask, alpha_blend, unlit, emissive_strength, double_sided,
+        normal_map, thin_glass, cameras,
+    )
+}  # fmt: skip

@@ -16,9 +16,11 @@ def _square(glb: Glb, name, colour, size=0.25, **placed) -> int:
 def _bar(glb: Glb, weights) -> int:
     """A strip 0.2 m wide and 2 m high on three pairs of vertices; gives its mesh."""
     points = [(x, y, 0) for y in (0, 1, 2) for x in (-0.1, 0.1)]
-    primitive = {"attributes": {"POSITION": glb.attribute(points, bounds=True)},
-                 "indices": glb.indices([(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)]),
-                 "material": glb.unlit("bar", (1, 0.5, 0))}
+    primitive = {
+        "attributes": {"POSITION": glb.attribute(points, bounds=True)},
+        "indices": glb.indices([(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)]),
+        "material": glb.unlit("bar", (1, 0.5, 0)),
+    }
     for k in range(0, len(weights[0]), 4):
         part = np.asarray(weights)[:, k : k + 4]
         primitive["attributes"][f"JOINTS_{k // 4}"] = glb.attribute(np.arange(k, k + 4) * (part > 0), "u8")
@@ -32,8 +34,8 @@ def _bent(glb: Glb, weights, copies=1) -> bytes:
     lower_copies = [glb.node(f"lower {k}") for k in range(1, copies)]
     upper_copies = [glb.node(f"upper {k}") for k in range(1, copies)]
     upper = glb.node("upper", (0, 1, 0), **({"children": upper_copies} if upper_copies else {}))
-    lower = glb.node("lower", (0, -1, 0), children=[upper] + lower_copies)
-    joints = [node for pair in zip([lower] + lower_copies, [upper] + upper_copies) for node in pair]
+    lower = glb.node("lower", (0, -1, 0), children=[upper, *lower_copies])
+    joints = [node for pair in zip([lower, *lower_copies], [upper, *upper_copies], strict=True) for node in pair]
     inverse = np.tile(np.eye(4), (len(joints), 1, 1))
     inverse[1::2, 1, 3] = -1
     # The skinned node's own transform must be ignored (glTF 2.0, 3.7.3.3).
@@ -50,8 +52,9 @@ def skin() -> bytes:
 def skin8() -> bytes:
     """The same bar with its influences spread over eight places; a row sums to 2 and one to 0.5, so that a
     reader that does not normalise tears it."""
-    thin = np.array([(0.25, 0, 0.25, 0, 0.25, 0, 0.25, 0)] * 2 + [(0.125,) * 8] * 2
-                    + [(0, 0.25, 0, 0.25, 0, 0.25, 0, 0.25)] * 2)
+    thin = np.array(
+        [(0.25, 0, 0.25, 0, 0.25, 0, 0.25, 0)] * 2 + [(0.125,) * 8] * 2 + [(0, 0.25, 0, 0.25, 0, 0.25, 0, 0.25)] * 2
+    )
     return _bent(Glb(), thin * np.array([1, 2, 1, 1, 0.5, 1])[:, None], copies=4)
 
 
@@ -61,10 +64,21 @@ def morph() -> bytes:
     shape = facing_z(1, 1)
     wider = np.where(shape.positions[:, :1] > 0, [(1, 0, 0)], [(0, 0, 0)])
     places = np.array([2, 3], np.uint16)  # the upper two vertices
-    raised = glb.add("accessors", {
-        "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0.5, 0],
-        "sparse": {"count": 2, "indices": {"bufferView": glb.view(places.tobytes()), "componentType": 5123},
-                   "values": {"bufferView": glb.view(np.float32([(0, 0.5, 0)] * 2).tobytes())}}})
+    raised = glb.add(
+        "accessors",
+        {
+            "componentType": 5126,
+            "count": 4,
+            "type": "VEC3",
+            "min": [0, 0, 0],
+            "max": [0, 0.5, 0],
+            "sparse": {
+                "count": 2,
+                "indices": {"bufferView": glb.view(places.tobytes()), "componentType": 5123},
+                "values": {"bufferView": glb.view(np.float32([(0, 0.5, 0)] * 2).tobytes())},
+            },
+        },
+    )
     primitive = glb.primitive(shape, glb.unlit("square", (0.5, 0, 1)))
     primitive["targets"] = [{"POSITION": glb.attribute(wider, bounds=True)}, {"POSITION": raised}]
     mesh = glb.mesh(primitive, "square", weights=[0, 0], extras={"targetNames": ["wider", "taller"]})
@@ -79,7 +93,10 @@ def interpolation() -> bytes:
     glb = Glb()
     names = ("step", "linear", "cubic", "turning")
     colours = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1))
-    nodes = [_square(glb, n, c, translation=(0, 0.75 - 0.5 * k, 0)) for k, (n, c) in enumerate(zip(names, colours))]
+    nodes = [
+        _square(glb, n, c, translation=(0, 0.75 - 0.5 * k, 0))
+        for k, (n, c) in enumerate(zip(names, colours, strict=True))
+    ]
     times, channels = [0, 1, 2], []
     for k, kind in enumerate(("STEP", "LINEAR", "CUBICSPLINE")):
         values = np.array([(x, 0.75 - 0.5 * k, 0) for x in (0, 1, 0)])
@@ -100,10 +117,14 @@ def stiff_keys() -> bytes:
     still = _square(glb, "still", (0, 1, 0))
     loose = _square(glb, "loose", (0, 0, 1), translation=(0, -0.5, 0))
     quarter = turn((0, 0, 1), 90)
-    glb.animation("stiff", [
-        (jump, "translation", [0, 0.5, 0.5 + 1e-7], [(-1, 0, 0), (-1, 0, 0), (1, 0, 0)], "LINEAR"),
-        (still, "translation", [0.25], [(0, 0.5, 0)], "LINEAR"),
-        (loose, "rotation", [0, 1], [(0, 0, 0, 3), quarter * 0.5], "LINEAR")])
+    glb.animation(
+        "stiff",
+        [
+            (jump, "translation", [0, 0.5, 0.5 + 1e-7], [(-1, 0, 0), (-1, 0, 0), (1, 0, 0)], "LINEAR"),
+            (still, "translation", [0.25], [(0, 0.5, 0)], "LINEAR"),
+            (loose, "rotation", [0, 1], [(0, 0, 0, 3), quarter * 0.5], "LINEAR"),
+        ],
+    )
     return watched(glb, [jump, still, loose])
 
 

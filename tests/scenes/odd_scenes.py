@@ -20,9 +20,11 @@ def _still_life(scale=1.0, offset=(0, 0, 0)) -> bytes:
         return offset + np.asarray(p, dtype=float) * scale
 
     matte = glb.material("matte", (0.7, 0.3, 0.2))
-    parts = {"floor": (facing_up(8, 8), glb.material("floor", (0.6, 0.6, 0.6)), (0, 0, 0)),
-             "ball": (_ball(), glb.mirror("mirror", (0.9, 0.9, 0.9)), (0.75, 0.7515, 0)),
-             "box": (box((1, 1, 1)), matte, (-0.75, 0.5015, 0.25))}
+    parts = {
+        "floor": (facing_up(8, 8), glb.material("floor", (0.6, 0.6, 0.6)), (0, 0, 0)),
+        "ball": (_ball(), glb.mirror("mirror", (0.9, 0.9, 0.9)), (0.75, 0.7515, 0)),
+        "box": (box((1, 1, 1)), matte, (-0.75, 0.5015, 0.25)),
+    }
     nodes = []
     for name, (shape, material, place) in parts.items():
         mesh = glb.mesh(glb.primitive(shape.scaled(scale), material), name)
@@ -96,12 +98,17 @@ def empty() -> bytes:
 def degenerate() -> bytes:
     """One honest square among zero-area, repeated-vertex, coincident and sliver triangles."""
     glb = Glb()
-    points = [(-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0),  # the square
-              (1, 0, 0), (1.25, 0, 0), (1.5, 0, 0),  # in one line
-              (-1.5, -0.75, 0), (-1.5, 0.75, 0), (-1.5 + 1.5e-6, 0.75, 0)]  # 10⁶ : 1
+    points = [
+        (-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0),  # the square
+        (1, 0, 0), (1.25, 0, 0), (1.5, 0, 0),  # in one line
+        (-1.5, -0.75, 0), (-1.5, 0.75, 0), (-1.5 + 1.5e-6, 0.75, 0),  # 10⁶ : 1
+    ]  # fmt: skip
     triangles = [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 4, 5), (4, 4, 4), (0, 1, 2), (2, 0, 1), (7, 9, 8)]
-    primitive = {"attributes": {"POSITION": glb.attribute(points, bounds=True)},
-                 "indices": glb.indices(triangles), "material": glb.unlit("white", (1, 1, 1))}
+    primitive = {
+        "attributes": {"POSITION": glb.attribute(points, bounds=True)},
+        "indices": glb.indices(triangles),
+        "material": glb.unlit("white", (1, 1, 1)),
+    }
     return watched(glb, [glb.node("shapes", mesh=glb.mesh(primitive, "shapes"))])
 
 
@@ -109,18 +116,30 @@ def zero_scale() -> bytes:
     """A square flattened to nothing beside one that is not."""
     glb = Glb()
     square = glb.mesh(glb.primitive(facing_z(0.5, 0.5), glb.unlit("white", (1, 1, 1))), "square")
-    return watched(glb, [glb.node("gone", (-1, 0, 0), scale=(0, 0, 0), mesh=square),
-                         glb.node("line", (0, 0, 0), scale=(1, 0, 1), mesh=square),
-                         glb.node("there", (1, 0, 0), mesh=square)])
+    return watched(
+        glb,
+        [
+            glb.node("gone", (-1, 0, 0), scale=(0, 0, 0), mesh=square),
+            glb.node("line", (0, 0, 0), scale=(1, 0, 1), mesh=square),
+            glb.node("there", (1, 0, 0), mesh=square),
+        ],
+    )
 
 
 def coplanar() -> bytes:
     """Two meshes in one plane: what has more red comes first, so red covers blue everywhere."""
     glb = Glb()
     red, blue = glb.unlit("red", (1, 0, 0)), glb.unlit("blue", (0, 0, 1))
-    return watched(glb, [glb.node(n, mesh=glb.mesh(glb.primitive(facing_z(1, 1), m), n))
-                         for n, m in (("red", red), ("blue", blue))])
+    return watched(
+        glb,
+        [glb.node(n, mesh=glb.mesh(glb.primitive(facing_z(1, 1), m), n)) for n, m in (("red", red), ("blue", blue))],
+    )
 
 
-SCENES = {f.__name__: f for f in (still_life, still_life_far, still_life_tiny, still_life_huge, far_vertices,
-                                  no_camera, no_light, no_triangles, empty, degenerate, zero_scale, coplanar)}
+SCENES = {
+    f.__name__: f
+    for f in (
+        still_life, still_life_far, still_life_tiny, still_life_huge, far_vertices, no_camera, no_light,
+        no_triangles, empty, degenerate, zero_scale, coplanar,
+    )
+}  # fmt: skip

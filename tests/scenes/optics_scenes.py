@@ -22,8 +22,10 @@ def _object(glb: Glb, shape, material, name, **placed) -> int:
 def _walls(glb: Glb, edge) -> list:
     """An unlit wall at z = -2, red left of x = edge and blue right of it."""
     red, blue = glb.unlit("red", (1, 0, 0)), glb.unlit("blue", (0, 0, 1))
-    return [_object(glb, facing_z(8, 8, -2, (edge - 4, 0)), red, "red wall"),
-            _object(glb, facing_z(8, 8, -2, (edge + 4, 0)), blue, "blue wall")]
+    return [
+        _object(glb, facing_z(8, 8, -2, (edge - 4, 0)), red, "red wall"),
+        _object(glb, facing_z(8, 8, -2, (edge + 4, 0)), blue, "blue wall"),
+    ]
 
 
 def _slab(glb: Glb) -> int:
@@ -43,7 +45,7 @@ def slab_oblique() -> bytes:
     ray arrives after its shift, so that the picture changes colour exactly in the middle."""
     glb = Glb()
     glass = glb.glass("slab", IOR, SLAB_THICKNESS)
-    nodes = [_object(glb, box((6, 6, SLAB_THICKNESS)), glass, "slab")] + _walls(glb, oblique_edge())
+    nodes = [_object(glb, box((6, 6, SLAB_THICKNESS)), glass, "slab"), *_walls(glb, oblique_edge())]
     eye = (4 * math.sqrt(0.5), 0, 4 * math.sqrt(0.5))
     camera = glb.orthographic("camera", 0.2, 0.1)
     nodes.append(glb.node("camera", eye, turn((0, 1, 0), 45), camera=camera))
@@ -78,9 +80,11 @@ def prism() -> bytes:
     glass = glb.glass("prism", IOR, 2)
     green, red = glb.unlit("green", (0, 1, 0)), glb.unlit("red", (1, 0, 0))
     wall = facing_z(8, 8)
-    nodes = [_object(glb, shape, glass, "prism"),
-             _object(glb, wall, green, "green wall", translation=(3, 0, 0), rotation=turn((0, 1, 0), -90)),
-             _object(glb, wall, red, "red wall", translation=(-1.5, 0, -3))]
+    nodes = [
+        _object(glb, shape, glass, "prism"),
+        _object(glb, wall, green, "green wall", translation=(3, 0, 0), rotation=turn((0, 1, 0), -90)),
+        _object(glb, wall, red, "red wall", translation=(-1.5, 0, -3)),
+    ]
     return watched(glb, nodes, 0.5, 0.5)
 
 
@@ -90,9 +94,11 @@ def mirrors() -> bytes:
     glb = Glb()
     silver = glb.mirror("silver", (0.9, 0.8, 0.7))
     white = glb.unlit("white", (1, 1, 1))
-    nodes = [_object(glb, facing_z(8, 8), silver, "front mirror", translation=(0, 0, -2)),
-             _object(glb, facing_z(8, 8), silver, "back mirror", translation=(0, 0, 2), rotation=turn((0, 1, 0), 180)),
-             _object(glb, facing_up(8, 4), white, "ceiling", translation=(0, 1, 0), rotation=turn((1, 0, 0), 180))]
+    nodes = [
+        _object(glb, facing_z(8, 8), silver, "front mirror", translation=(0, 0, -2)),
+        _object(glb, facing_z(8, 8), silver, "back mirror", translation=(0, 0, 2), rotation=turn((0, 1, 0), 180)),
+        _object(glb, facing_up(8, 4), white, "ceiling", translation=(0, 1, 0), rotation=turn((1, 0, 0), 180)),
+    ]
     eye = glb.orthographic("camera", 1, 1, 0.001, 100)
     nodes.append(glb.node("camera", (0, -0.5, 0), look_at((0, 0, 0), (0, 1, -8)), camera=eye))
     glb.scene(nodes, "mirrors")
@@ -104,7 +110,7 @@ def _plane_from_above(glb: Glb, nodes, half=2.0) -> bytes:
     plane = _object(glb, facing_up(10, 10), glb.material("matte", (0.5, 0.5, 0.5), extensions=MATTE), "plane")
     eye = glb.orthographic("camera", half, half, 0.01, 100)
     above = glb.node("camera", (0, 10, 0), look_at((0, 10, 0), (0, 0, 0), (0, 0, -1)), camera=eye)
-    glb.scene([plane] + nodes + [above], "plane")
+    glb.scene([plane, *nodes, above], "plane")
     return glb.bytes()
 
 
@@ -125,8 +131,12 @@ def spot_light() -> bytes:
 def directional_light() -> bytes:
     """π lux from +X, 60° from straight above: radiance 1/4, and a roof at 1 m throws its shadow tan 60° to -X."""
     glb = Glb()
-    sun = glb.light("sun", "directional", np.pi, placed={
-        "rotation": look_at((math.sin(math.pi / 3), math.cos(math.pi / 3), 0), (0, 0, 0))})
+    sun = glb.light(
+        "sun",
+        "directional",
+        np.pi,
+        placed={"rotation": look_at((math.sin(math.pi / 3), math.cos(math.pi / 3), 0), (0, 0, 0))},
+    )
     roof = _object(glb, facing_up(0.5, 0.5), glb.unlit("roof", (0, 0, 1)), "roof", translation=(1, 1, 0))
     return _plane_from_above(glb, [sun, roof])
 
@@ -137,9 +147,11 @@ def nested_glass() -> bytes:
     ball = sphere(8)
     glass, water = glb.glass("glass", IOR, 2), glb.glass("water", 1.33, 1)
     outer = glb.primitive(ball, glass)
-    nodes = [glb.node("glass", mesh=glb.mesh(outer, "glass")),
-             glb.node("water", scale=(0.5,) * 3, mesh=glb.mesh(outer | {"material": water}, "water")),
-             _object(glb, facing_z(8, 8, -2), glb.unlit("white", (1, 1, 1)), "wall")]
+    nodes = [
+        glb.node("glass", mesh=glb.mesh(outer, "glass")),
+        glb.node("water", scale=(0.5,) * 3, mesh=glb.mesh(outer | {"material": water}, "water")),
+        _object(glb, facing_z(8, 8, -2), glb.unlit("white", (1, 1, 1)), "wall"),
+    ]
     return watched(glb, nodes)
 
 
@@ -162,17 +174,24 @@ def answers() -> dict:
     f45 = fresnel(cos45, IOR)
     water = fresnel(1, 1.33 / IOR)
     inside = math.asin(math.sin(math.radians(45)) / IOR)
-    return {"slab once through": [(1 - f) ** 2 * a for a in clear],
-            "slab all internal reflections": [(1 - f) ** 2 * a / (1 - (f * a) ** 2) for a in clear],
-            "oblique Fresnel": f45, "oblique once through": (1 - f45) ** 2, "oblique edge x": oblique_edge(),
-            "oblique angle inside (degrees)": math.degrees(inside),
-            "oblique lateral shift": SLAB_THICKNESS * math.sin(math.pi / 4 - inside) / math.cos(inside),
-            "critical angle (degrees)": math.degrees(math.asin(1 / IOR)), "prism": (1 - f) ** 2,
-            "nested centre": (1 - f) ** 2 * (1 - water) ** 2}
+    return {
+        "slab once through": [(1 - f) ** 2 * a for a in clear],
+        "slab all internal reflections": [(1 - f) ** 2 * a / (1 - (f * a) ** 2) for a in clear],
+        "oblique Fresnel": f45,
+        "oblique once through": (1 - f45) ** 2,
+        "oblique edge x": oblique_edge(),
+        "oblique angle inside (degrees)": math.degrees(inside),
+        "oblique lateral shift": SLAB_THICKNESS * math.sin(math.pi / 4 - inside) / math.cos(inside),
+        "critical angle (degrees)": math.degrees(math.asin(1 / IOR)),
+        "prism": (1 - f) ** 2,
+        "nested centre": (1 - f) ** 2 * (1 - water) ** 2,
+    }
 
 
-SCENES = {f.__name__: f for f in (slab, slab_oblique, prism, mirrors, point_light, spot_light,
-                                  directional_light, nested_glass)}
+SCENES = {
+    f.__name__: f
+    for f in (slab, slab_oblique, prism, mirrors, point_light, spot_light, directional_light, nested_glass)
+}
 if __name__ == "__main__":
     for name, value in answers().items():
         print(f"{name}: {value}")

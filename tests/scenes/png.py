@@ -24,8 +24,9 @@ def _stored(data: bytes) -> bytes:
 def _file(width: int, height: int, depth: int, colour: int, extra: bytes, rows: list[bytes]) -> bytes:
     header = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, 0)
     pixels = b"".join(b"\0" + row for row in rows)
-    return (b"\x89PNG\r\n\x1a\n" + _chunk(b"IHDR", header) + extra
-            + _chunk(b"IDAT", _stored(pixels)) + _chunk(b"IEND", b""))
+    return (
+        b"\x89PNG\r\n\x1a\n" + _chunk(b"IHDR", header) + extra + _chunk(b"IDAT", _stored(pixels)) + _chunk(b"IEND", b"")
+    )
 
 
 def rgba(pixels) -> bytes:

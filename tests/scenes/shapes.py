@@ -30,9 +30,12 @@ def unit(v):
 def joined(shapes) -> Shape:
     """One shape of many; all or none have normals and UVs."""
     starts = np.cumsum([0] + [len(s.positions) for s in shapes[:-1]])
-    together = {name: np.concatenate([getattr(s, name) for s in shapes])
-                for name in ("positions", "normals", "uvs") if getattr(shapes[0], name) is not None}
-    return Shape(triangles=np.concatenate([s.triangles + n for s, n in zip(shapes, starts)]), **together)
+    together = {
+        name: np.concatenate([getattr(s, name) for s in shapes])
+        for name in ("positions", "normals", "uvs")
+        if getattr(shapes[0], name) is not None
+    }
+    return Shape(triangles=np.concatenate([s.triangles + n for s, n in zip(shapes, starts, strict=True)]), **together)
 
 
 def grid(corner, u, v, cells=(1, 1), uv_scale=None) -> Shape:
@@ -46,16 +49,17 @@ def grid(corner, u, v, cells=(1, 1), uv_scale=None) -> Shape:
     first = (np.arange(cells[1])[:, None] * row + np.arange(cells[0])).ravel()
     lower = np.stack([first, first + 1, first + row + 1], 1)
     upper = np.stack([first, first + row + 1, first + row], 1)
-    return Shape(positions=snap(corner + across[:, None] * u + up[:, None] * v),
-                 triangles=np.stack([lower, upper], 1).reshape(-1, 3),
-                 normals=snap(np.broadcast_to(unit(np.cross(u, v)), (len(across), 3))),
-                 uvs=snap(np.stack([across, 1 - up], 1) * uv_scale) if uv_scale else None)
+    return Shape(
+        positions=snap(corner + across[:, None] * u + up[:, None] * v),
+        triangles=np.stack([lower, upper], 1).reshape(-1, 3),
+        normals=snap(np.broadcast_to(unit(np.cross(u, v)), (len(across), 3))),
+        uvs=snap(np.stack([across, 1 - up], 1) * uv_scale) if uv_scale else None,
+    )
 
 
 def facing_z(width, height, z=0.0, centre=(0.0, 0.0), cells=(1, 1), uv_scale=None) -> Shape:
     """A rectangle seen from +Z."""
-    return grid((centre[0] - width / 2, centre[1] - height / 2, z), (width, 0, 0), (0, height, 0), cells,
-                uv_scale)
+    return grid((centre[0] - width / 2, centre[1] - height / 2, z), (width, 0, 0), (0, height, 0), cells, uv_scale)
 
 
 def facing_up(width, depth, y=0.0, cells=(1, 1), uv_scale=None) -> Shape:
@@ -79,11 +83,15 @@ def box(size=(1, 1, 1), centre=(0, 0, 0), cells=1, uv_scale=None) -> Shape:
 
 def _icosahedron():
     g = (1 + 5**0.5) / 2
-    corners = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
-               (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]
-    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
-             (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5),
-             (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    corners = [
+        (-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
+        (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1),
+    ]  # fmt: skip
+    faces = [
+        (0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
+        (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9),
+        (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
+    ]  # fmt: skip
     return unit(np.array(corners, dtype=np.float64)), faces
 
 
@@ -95,7 +103,7 @@ def sphere(frequency: int) -> Shape:
 
     def vertex(face, i, j):
         weights = (frequency - i - j, i, j)
-        key = tuple(sorted((c, w) for c, w in zip(face, weights) if w))
+        key = tuple(sorted((c, w) for c, w in zip(face, weights, strict=True) if w))
         if key not in known:
             known[key] = len(positions)
             positions.append(sum(corners[c] * w for c, w in key))
@@ -131,13 +139,20 @@ def turn(axis, degrees) -> np.ndarray:
 def quaternion(matrix) -> np.ndarray:
     """Of a rotation matrix, by the largest of the four components, so that nothing cancels."""
     m = np.asarray(matrix, dtype=np.float64)
-    squares = [1 + m[0, 0] - m[1, 1] - m[2, 2], 1 - m[0, 0] + m[1, 1] - m[2, 2],
-               1 - m[0, 0] - m[1, 1] + m[2, 2], 1 + np.trace(m)]
+    squares = [
+        1 + m[0, 0] - m[1, 1] - m[2, 2],
+        1 - m[0, 0] + m[1, 1] - m[2, 2],
+        1 - m[0, 0] - m[1, 1] + m[2, 2],
+        1 + np.trace(m),
+    ]
     k = int(np.argmax(squares))
     x, y, z, w = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], squares[3]
-    rows = [(squares[0], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], x),
-            (m[0, 1] + m[1, 0], squares[1], m[1, 2] + m[2, 1], y),
-            (m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], squares[2], z), (x, y, z, w)]
+    rows = [
+        (squares[0], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], x),
+        (m[0, 1] + m[1, 0], squares[1], m[1, 2] + m[2, 1], y),
+        (m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], squares[2], z),
+        (x, y, z, w),
+    ]
     return snap(unit(rows[k]), 2.0**-40)
 
 

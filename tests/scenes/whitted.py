@@ -12,7 +12,7 @@ from png import two_colours
 from shapes import Shape, facing_up, look_at, look_rotation, quaternion, smooth_normals, sphere, turn
 
 SECONDS = 4.0
-FLOOR = 60.0      # m, both ways; one check is 1 m
+FLOOR = 60.0  # m, both ways; one check is 1 m
 SKY_RADIUS = 29.0
 TENTACLE = (-3.15, 0.0, -0.9)
 TENTACLE_HEIGHT, JOINTS = 2.4, 5
@@ -34,14 +34,19 @@ def hermite_loop(times, keys, t):
     i = min(int(np.searchsorted(times, t, side="right")) - 1, len(times) - 2)
     d = times[i + 1] - times[i]
     s = (t - times[i]) / d
-    return ((2 * s**3 - 3 * s**2 + 1) * keys[i, 1] + d * (s**3 - 2 * s**2 + s) * keys[i, 2]
-            + (-2 * s**3 + 3 * s**2) * keys[i + 1, 1] + d * (s**3 - s**2) * keys[i + 1, 0])
+    return (
+        (2 * s**3 - 3 * s**2 + 1) * keys[i, 1]
+        + d * (s**3 - 2 * s**2 + s) * keys[i, 2]
+        + (-2 * s**3 + 3 * s**2) * keys[i + 1, 1]
+        + d * (s**3 - s**2) * keys[i + 1, 0]
+    )
 
 
 def floor(glb: Glb) -> int:
     checks = np.kron([[0, 1], [1, 0]], np.ones((64, 64), dtype=np.uint8))
-    texture = glb.texture(two_colours(checks, (205, 38, 24), (250, 206, 62)),
-                          (LINEAR, LINEAR_MIPMAP_LINEAR), (REPEAT, REPEAT))
+    texture = glb.texture(
+        two_colours(checks, (205, 38, 24), (250, 206, 62)), (LINEAR, LINEAR_MIPMAP_LINEAR), (REPEAT, REPEAT)
+    )
     material = glb.material("checks", texture=texture, roughness=0.9)
     quad = facing_up(FLOOR, FLOOR, uv_scale=FLOOR / 2)
     return glb.node("floor", mesh=glb.mesh(glb.primitive(quad, material), "floor"))
@@ -51,8 +56,18 @@ def sky(glb: Glb) -> int:
     """An unlit ring of a dome, light at the horizon and black where it ends, 45° up: the directional light
     comes in above it. What the ring shades lies behind the camera."""
     rings, segments = np.radians([-2, 2, 6, 12, 19, 27, 36, 45]), 32
-    colours = np.array([(.55, .72, .95), (.50, .68, .94), (.40, .60, .92), (.26, .46, .82), (.14, .29, .62),
-                        (.055, .13, .34), (.015, .04, .12), (0, 0, 0)])
+    colours = np.array(
+        [
+            (0.55, 0.72, 0.95),
+            (0.50, 0.68, 0.94),
+            (0.40, 0.60, 0.92),
+            (0.26, 0.46, 0.82),
+            (0.14, 0.29, 0.62),
+            (0.055, 0.13, 0.34),
+            (0.015, 0.04, 0.12),
+            (0, 0, 0),
+        ]
+    )
     angles = np.arange(segments) * 2 * np.pi / segments
     points = np.array([(np.cos(e) * np.cos(a), np.sin(e), np.cos(e) * np.sin(a)) for e in rings for a in angles])
     triangles = []
@@ -74,8 +89,11 @@ def tentacle_shape():
     tip = np.sqrt(np.maximum(0, 1 - (np.maximum(share - 0.92, 0) / 0.08) ** 2))
     radius = (0.30 * (1 - share) ** 1.2 + 0.10) * tip
     angles = np.arange(segments) * 2 * np.pi / segments
-    points = [(radius[r] * np.sin(a), 0.003 + share[r] * TENTACLE_HEIGHT, radius[r] * np.cos(a))
-              for r in range(rings - 1) for a in angles]
+    points = [
+        (radius[r] * np.sin(a), 0.003 + share[r] * TENTACLE_HEIGHT, radius[r] * np.cos(a))
+        for r in range(rings - 1)
+        for a in angles
+    ]
     points.append((0, 0.003 + TENTACLE_HEIGHT, 0))
     triangles = []
     for r in range(rings - 2):
@@ -109,8 +127,13 @@ def tentacle(glb: Glb):
     low, high = np.array((0.02, 0.30, 0.33)), np.array((0.16, 0.72, 0.52))
     colours = np.round((low + (high - low) * snap(band, 2.0**-12)[:, None]) * 255)
     material = glb.material("tentacle", roughness=0.55)
-    primitive = glb.primitive(shape, material, COLOR_0=glb.attribute(colours, "u8", normalized=True),
-                              JOINTS_0=glb.attribute(joints, "u8"), WEIGHTS_0=glb.attribute(weights))
+    primitive = glb.primitive(
+        shape,
+        material,
+        COLOR_0=glb.attribute(colours, "u8", normalized=True),
+        JOINTS_0=glb.attribute(joints, "u8"),
+        WEIGHTS_0=glb.attribute(weights),
+    )
     mesh = glb.mesh(primitive, "tentacle")
     step = TENTACLE_HEIGHT / JOINTS
     bones = [glb.node(f"joint {k}", TENTACLE if k == 0 else (0, step, 0)) for k in range(JOINTS)]
@@ -141,8 +164,9 @@ def flower(glb: Glb) -> int:
     targets = []
     for radius in (petals, cushion):
         points, normals = standing(radius)
-        targets.append({"POSITION": glb.attribute(points - rest, bounds=True),
-                        "NORMAL": glb.attribute(normals - rest_normals)})
+        targets.append(
+            {"POSITION": glb.attribute(points - rest, bounds=True), "NORMAL": glb.attribute(normals - rest_normals)}
+        )
     material = glb.material("flower", (0.62, 0.10, 0.42), roughness=0.5)
     primitive = glb.primitive(Shape(rest, ball.triangles, rest_normals), material) | {"targets": targets}
     mesh = glb.mesh(primitive, "flower", weights=[0, 0], extras={"targetNames": ["petals", "cushion"]})
@@ -157,7 +181,7 @@ def waving(bones):
     for k, bone in list(enumerate(bones))[1:]:
         phase = 2 * np.pi * times / SECONDS - 0.7 * k
         sway, lean = (7 + 5 * k) * np.sin(phase), 5 * np.cos(phase)
-        keys = [quaternion(_about_z(np.radians(s)) @ _about_x(np.radians(e))) for s, e in zip(sway, lean)]
+        keys = [quaternion(_about_z(np.radians(s)) @ _about_x(np.radians(e))) for s, e in zip(sway, lean, strict=True)]
         keys[-1] = keys[0]
         channels.append((bone, "rotation", times, keys, "LINEAR"))
     return channels
@@ -194,8 +218,12 @@ def build() -> bytes:
     glass_primitive = glb.primitive(ball, glass)
     nodes = [floor(glb), sky(glb)]
     glass_ball = glb.node("glass sphere", (-0.75, 1.62, 0.9), mesh=glb.mesh(glass_primitive, "glass sphere"))
-    mirror_ball = glb.node("mirror sphere", (0.85, 0.955, -1.25), scale=(0.95, 0.95, 0.95),
-                           mesh=glb.mesh(glass_primitive | {"material": mirror}, "mirror sphere"))
+    mirror_ball = glb.node(
+        "mirror sphere",
+        (0.85, 0.955, -1.25),
+        scale=(0.95, 0.95, 0.95),
+        mesh=glb.mesh(glass_primitive | {"material": mirror}, "mirror sphere"),
+    )
     arm, bones = tentacle(glb)
     blob = flower(glb)
     key = glb.light("key", "point", 130, (1, 0.96, 0.88), {"translation": (-3.2, 5.2, 3.4)})
@@ -209,8 +237,15 @@ def build() -> bytes:
     quarter = np.arange(5) * SECONDS / 4
     lights = cubic_loop(quarter, [(-3.2, 5.2, 3.4), (-0.6, 6.0, 4.6), (2.6, 5.2, 3.6), (0.2, 4.6, 2.4)])
     floats = cubic_loop(quarter, [(-0.75, 1.62, 0.9), (-0.66, 1.74, 0.8), (-0.75, 1.84, 0.9), (-0.84, 1.72, 1.0)])
-    glb.animation("whitted", moves + [
-        (glass_ball, "translation", quarter, floats, "CUBICSPLINE"),
-        (key, "translation", quarter, lights, "CUBICSPLINE"), blooming(blob)] + waving(bones))
-    glb.scene(nodes + [glass_ball, mirror_ball, bones[0], arm, blob, key, fill, eye], "whitted")
+    glb.animation(
+        "whitted",
+        [
+            *moves,
+            (glass_ball, "translation", quarter, floats, "CUBICSPLINE"),
+            (key, "translation", quarter, lights, "CUBICSPLINE"),
+            blooming(blob),
+            *waving(bones),
+        ],
+    )
+    glb.scene([*nodes, glass_ball, mirror_ball, bones[0], arm, blob, key, fill, eye], "whitted")
     return glb.bytes()

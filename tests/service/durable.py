@@ -12,9 +12,9 @@ def workers_of(data: pathlib.Path) -> list[int]:
     for place in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
             words = place.read_bytes().split(b"\0")
-            if b"render" in words and any(w.startswith(str(data).encode()) for w in words):
-                if ") Z" not in place.with_name("stat").read_text():
-                    found.append(int(place.parent.name))
+            ours = b"render" in words and any(w.startswith(str(data).encode()) for w in words)
+            if ours and ") Z" not in place.with_name("stat").read_text():
+                found.append(int(place.parent.name))
         except OSError:
             continue
     return found
@@ -31,7 +31,8 @@ def check_frames(service: Service, job: dict) -> None:
         if frame["state"] != "done":
             continue
         data = service.http.get(frame["exr"]).content
-        assert data.startswith(b"v/1\x01") and len(data) == frame["bytes"]
+        assert data.startswith(b"v/1\x01")
+        assert len(data) == frame["bytes"]
     numbers = [frame["frame"] for frame in job["frames"]]
     assert numbers == sorted(set(numbers))
     assert job["progress"]["done"] == sum(frame["state"] == "done" for frame in job["frames"])

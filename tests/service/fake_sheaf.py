@@ -102,7 +102,7 @@ def misbehave(fake: dict, frame: int | None) -> None:
 
 
 def prepare(fake: dict) -> None:
-    if "until" in fake and not os.path.exists(fake["until"]):
+    if "until" in fake and not pathlib.Path(fake["until"]).exists():
         for key in ("exit", "signal", "mute"):
             fake.pop(key, None)
     if fake.get("stubborn"):
@@ -126,8 +126,8 @@ def stem_of(options: argparse.Namespace, frame: int) -> str:
 def begin(fake: dict, out: pathlib.Path, frame: int) -> None:
     """Waits for the frame's gate, notes it down, and takes its time."""
     if str(frame) in fake.get("gates", {}):
-        open(fake["gates"][str(frame)], "rb").read()
-    with open(out.parent / "ledger", "a") as ledger:
+        pathlib.Path(fake["gates"][str(frame)]).read_bytes()
+    with (out.parent / "ledger").open("a") as ledger:
         ledger.write(f"{frame}\n")
     time.sleep(fake.get("pace", 0))
 
@@ -191,7 +191,7 @@ def inspect(scene: str) -> None:
     except ValueError:
         sys.exit(3)
     if "inspect_gate" in fake:
-        open(fake["inspect_gate"], "rb").read()
+        pathlib.Path(fake["inspect_gate"]).read_bytes()
     if fake.get("inspect_exit"):
         print(f"sheaf: {scene}: too much of it", file=sys.stderr)
         sys.exit(fake["inspect_exit"])
@@ -206,7 +206,7 @@ if __name__ == "__main__":
     if given.command == "devices":
         print("[]")
         gone = os.environ.get("FAKE_DEVICES_GONE")  # a file: there is no device as long as it is there
-        sys.exit(4 if gone and os.path.exists(gone) else int(os.environ.get("FAKE_DEVICES_EXIT", "0")))
+        sys.exit(4 if gone and pathlib.Path(gone).exists() else int(os.environ.get("FAKE_DEVICES_EXIT", "0")))
     try:
         render(given)
     except OSError as error:

@@ -49,12 +49,13 @@ class Service:
         places = readable or [sys.base_prefix, sys.prefix, HERE, data.parent]
         seen = [word for place in places for word in ("--worker-reads", str(place))]
         self.process = subprocess.Popen(
-            [*(prefix or []), program("sheafd"), "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf]
-            + [*free, *seen, *options],
-            stderr=subprocess.PIPE,
-            text=True,
+            [
+                *(prefix or []),
+                program("sheafd"),
+                "--listen", "127.0.0.1:0", "--data", data, "--sheaf", sheaf, *free, *seen, *options, ],
+                stderr=subprocess.PIPE, text=True,
             env={**os.environ, **(env or {})},
-        )
+        )  # fmt: skip
         self.log: list[dict] = []
         self._listening = threading.Event()
         self._reader = threading.Thread(target=self._read_log, daemon=True)

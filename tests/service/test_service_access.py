@@ -6,6 +6,7 @@ import subprocess
 from collections.abc import Callable
 
 import pytest
+
 from service import PATIENCE, Service, check_problem, gltf, program
 
 
@@ -23,7 +24,8 @@ def guarded(start: Callable[..., Service], tmp_path: pathlib.Path) -> tuple[Serv
     reader, first = new_token("reader=read")
     owner, second = new_token("owner=read,submit")
     (tmp_path / "tokens").write_text(first + second)
-    assert reader not in first and len(reader) > 40
+    assert reader not in first
+    assert len(reader) > 40
     return start("--token-file", str(tmp_path / "tokens")), reader, owner
 
 
@@ -81,7 +83,8 @@ def run(*options: str) -> subprocess.CompletedProcess[str]:
 
 def test_it_does_not_listen_to_the_world_by_mistake(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
     ended = run("--listen", "0.0.0.0:0", "--data", str(tmp_path / "d"))
-    assert ended.returncode == 2 and "--token-file" in ended.stderr.splitlines()[-1]
+    assert ended.returncode == 2
+    assert "--token-file" in ended.stderr.splitlines()[-1]
     service = start("--listen", "0.0.0.0:0", "--allow-anonymous")  # the last --listen counts
     assert service.address.startswith("0.0.0.0:")
 
@@ -98,7 +101,9 @@ def test_it_does_not_listen_to_the_world_by_mistake(start: Callable[..., Service
 def test_bad_token_files(tmp_path: pathlib.Path, text: str, said: str) -> None:
     (tmp_path / "tokens").write_text(text)
     ended = run("--token-file", str(tmp_path / "tokens"), "--data", str(tmp_path / "d"), "--listen", "127.0.0.1:0")
-    assert ended.returncode == 3 and said in ended.stderr and ended.stderr.count("\n") == 1
+    assert ended.returncode == 3
+    assert said in ended.stderr
+    assert ended.stderr.count("\n") == 1
 
 
 def test_token_files_that_cannot_be_trusted(tmp_path: pathlib.Path) -> None:
@@ -106,7 +111,8 @@ def test_token_files_that_cannot_be_trusted(tmp_path: pathlib.Path) -> None:
     (tmp_path / "tokens").write_text(new_token("a=read")[1])
     (tmp_path / "tokens").chmod(0o666)
     ended = run("--token-file", str(tmp_path / "tokens"), "--data", str(tmp_path / "d"))
-    assert ended.returncode == 3 and "chmod" in ended.stderr
+    assert ended.returncode == 3
+    assert "chmod" in ended.stderr
     for wanted in ("a", "a=everything", "=read"):
         assert run("--new-token", wanted).returncode == 2
 
@@ -132,6 +138,7 @@ def test_tokens_come_and_go_without_a_restart(guarded: tuple[Service, str, str],
     file.unlink()
     assert (status(reader), status(owner)) == (200, 401)
     told = [entry for entry in service.log if entry["message"].startswith("token file is bad")]
-    assert len(told) == 2 and "line 1" in told[0]["reason"]
+    assert len(told) == 2
+    assert "line 1" in told[0]["reason"]
     file.write_text(second)
     assert (status(reader), status(owner)) == (401, 200)

@@ -7,10 +7,10 @@ import pathlib
 from collections.abc import Callable
 
 import pytest
-from conftest import Gate
-from service import PATIENCE, Service, gltf
 
 import sheaf
+from conftest import Gate
+from service import PATIENCE, Service, gltf
 
 
 def render(url: str, scene: pathlib.Path) -> list[str]:
@@ -46,5 +46,6 @@ def test_waiting_goes_on_after_the_service_was_killed(
         service = restart("--listen", service.address)
         gate.open()
         state, *ids = told.result(PATIENCE)
-    assert state == "done" and ids == [str(i + 1) for i in range(len(ids))]
+    assert state == "done"
+    assert ids == [str(i + 1) for i in range(len(ids))]
     assert service.job(jobs[0]["id"])["starts"] == 2

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 
 import pytest
+
 from service import Service, gltf
 
 PROBE = f"""#!{sys.executable}
@@ -76,8 +77,11 @@ def test_a_worker_has_its_job_and_nothing_else(
     database, secret = str(data / "jobs.db"), str(tmp_path / "secret")
     found = tried(service, read=[foreign, database, secret, "/proc/self/status"], write=[foreign, secret, "/usr/x"])
     held = active(service)
-    assert "rlimits" in held and found["core"] == 0 and found["data"] == 3000 << 20
-    assert found["own"] == "done" and found["read /proc/self/status"] == "done"
+    assert "rlimits" in held
+    assert found["core"] == 0
+    assert found["data"] == 3000 << 20
+    assert found["own"] == "done"
+    assert found["read /proc/self/status"] == "done"
     if "no_new_privs" in held:
         assert found["privileges"] is True
     if "seccomp" in held:
@@ -96,8 +100,10 @@ def test_confinement_can_be_left_out(
     service = start("--no-confinement", sheaf=probe)
     (tmp_path / "secret").write_text("s")
     found = tried(service, read=[str(tmp_path / "secret")])
-    assert found["inet"] == "done" and found["read " + str(tmp_path / "secret")] == "done"
-    assert active(service) == {"rlimits"} and found["core"] == 0
+    assert found["inet"] == "done"
+    assert found["read " + str(tmp_path / "secret")] == "done"
+    assert active(service) == {"rlimits"}
+    assert found["core"] == 0
 
 
 @pytest.mark.parametrize(
@@ -115,8 +121,11 @@ def test_time_is_limited(
     place.chmod(0o755)
     service = start("--grace", "1", *options, sheaf=place)
     end = service.wait(service.accepted(gltf(), {"frames": 0}))
-    assert end["state"] == "failed" and end["error"]["code"] == "limit-exceeded"
-    assert said in end["error"]["message"] and "1 s" in end["error"]["message"] and end["starts"] == 1
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "limit-exceeded"
+    assert said in end["error"]["message"]
+    assert "1 s" in end["error"]["message"]
+    assert end["starts"] == 1
 
 
 @pytest.mark.parametrize(("options", "more"), [([], 10), (["--worker-nice", "3"], 3), (["--worker-nice", "0"], 0)])

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+
 from service import Service, gltf
 
 SCHEMATHESIS = pathlib.Path(sys.executable).with_name("schemathesis")

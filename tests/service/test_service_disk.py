@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 
 import pytest
+
 from conftest import Gate
 from durable import begun, check_frames
 from service import FAKE, PATIENCE, Service, check_problem, gltf, program
@@ -101,7 +102,8 @@ def test_a_full_disk_and_one_that_fails(start: Callable[..., Service], disk: Sma
     disk.empty()
     gate.open()
     end = service.wait(held)
-    assert end["state"] == "done" and end["starts"] == 2
+    assert end["state"] == "done"
+    assert end["starts"] == 2
     check_frames(service, end)
     assert service.wait(service.accepted(gltf(), {"frames": 0}))["state"] == "done"
     wait_until_well(service)
@@ -112,7 +114,8 @@ def test_a_full_disk_and_one_that_fails(start: Callable[..., Service], disk: Sma
     assert int(reply.headers["Retry-After"]) > 0
     check_problem(service.http.delete(f"/v1/jobs/{good}"), 503, "storage")
     assert check_problem(service.http.get("/readyz"), 503, "not-ready")["checks"]["disk"] != "ok"
-    assert service.job(good) == before and service.http.get(before["frames"][0]["exr"]).content
+    assert service.job(good) == before
+    assert service.http.get(before["frames"][0]["exr"]).content
     limit_files_of(service, resource.RLIM_INFINITY)
     wait_until_well(service)
     assert service.wait(service.accepted(gltf(), {"frames": 0}))["state"] == "done"
@@ -152,7 +155,8 @@ def test_jobs_outlive_a_disk_that_cannot_be_written(
     gate.open()
     wait_until_held_up(service, job)
     seen = service.job(job)
-    assert seen["state"] == "queued" and seen["progress"]["done"] == 2
+    assert seen["state"] == "queued"
+    assert seen["progress"]["done"] == 2
     if killed:
         service.process.kill()
         service.stop()
@@ -161,7 +165,8 @@ def test_jobs_outlive_a_disk_that_cannot_be_written(
         service = restart(prefix=disk.prefix)
     gate.open()
     end = service.wait(job)
-    assert end["state"] == "done" and end["starts"] == 2
+    assert end["state"] == "done"
+    assert end["starts"] == 2
     check_frames(service, end)
     assert service.wait(waiting)["state"] == "done"
 
@@ -178,7 +183,8 @@ def test_a_job_that_waits_for_the_disk_can_be_cancelled(
     assert service.http.post(f"/v1/jobs/{job}/cancel").json()["state"] == "cancelled"
     disk.allow_writing()
     assert service.wait(service.accepted(gltf(), {"frames": 0}))["state"] == "done"
-    assert service.job(job)["state"] == "cancelled" and service.job(job)["starts"] == 1
+    assert service.job(job)["state"] == "cancelled"
+    assert service.job(job)["starts"] == 1
 
 
 def test_a_worker_that_cannot_write_to_a_good_disk_is_not_tried_for_ever(sheafd: Service) -> None:
@@ -194,4 +200,5 @@ def test_a_read_only_data_folder_is_refused_at_the_start(disk: SmallDisk) -> Non
     ended = subprocess.run(
         [*disk.prefix, str(program("sheafd")), *options], capture_output=True, text=True, timeout=PATIENCE, check=False
     )
-    assert ended.returncode == 6 and "Read-only" in ended.stderr
+    assert ended.returncode == 6
+    assert "Read-only" in ended.stderr

@@ -8,6 +8,7 @@ import sqlite3
 from collections.abc import Callable
 
 import pytest
+
 from conftest import Gate
 from durable import begun, check_frames, workers_of
 from service import Service, check_problem, gltf
@@ -55,11 +56,13 @@ def test_a_killed_service_takes_its_jobs_up_and_renders_nothing_twice(
     assert service.wait(job, "running")["frames"][1]["state"] == "done"
     gate.open()
     end = service.wait(job)
-    assert end["state"] == "done" and end["starts"] == 2
+    assert end["state"] == "done"
+    assert end["starts"] == 2
     assert service.wait(waiting)["state"] == "done"
     check_frames(service, end)
     rendered = begun(service, job)
-    assert sorted(set(rendered)) == [0, 1, 2, 3] and rendered.count(0) == rendered.count(1) == 1
+    assert sorted(set(rendered)) == [0, 1, 2, 3]
+    assert rendered.count(0) == rendered.count(1) == 1
     ids = [event["id"] for event in service.events(job)]
     assert ids == list(range(1, len(ids) + 1))
 
@@ -88,13 +91,16 @@ def test_a_killed_worker_is_started_again_and_not_for_ever(sheafd: Service, tmp_
             trouble.unlink()
             break
     end = sheafd.wait(job)
-    assert end["state"] == "done" and end["starts"] >= 2
+    assert end["state"] == "done"
+    assert end["starts"] >= 2
     hopeless = sheafd.wait(sheafd.accepted(gltf(signal=int(signal.SIGKILL), at=1), {"frames": "0-2"}))
-    assert hopeless["state"] == "failed" and hopeless["error"]["code"] == "worker-crashed"
+    assert hopeless["state"] == "failed"
+    assert hopeless["error"]["code"] == "worker-crashed"
     assert hopeless["starts"] == 4  # three without a new frame
     assert [f["state"] for f in hopeless["frames"]] == ["done", "missing", "missing"]
     crash = sheafd.wait(sheafd.accepted(gltf(signal=int(signal.SIGSEGV), at=1), {"frames": "0-2"}))
-    assert crash["state"] == "failed" and crash["starts"] == 1
+    assert crash["state"] == "failed"
+    assert crash["starts"] == 1
 
 
 def test_a_job_that_takes_the_service_down_is_given_up(restart: Callable[..., Service], gate: Gate) -> None:
@@ -107,7 +113,9 @@ def test_a_job_that_takes_the_service_down_is_given_up(restart: Callable[..., Se
         service.process.kill()
         service.stop()
     end = restart("--attempts", "3").wait(job or "")
-    assert end["state"] == "failed" and end["error"]["code"] == "interrupted" and "3 times" in end["error"]["message"]
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "interrupted"
+    assert "3 times" in end["error"]["message"]
 
 
 @pytest.mark.parametrize("known", [True, False])
@@ -122,7 +130,8 @@ def test_frames_that_were_not_reported_are_kept(sheafd: Service, tmp_path: pathl
             break
     end = sheafd.wait(job)
     assert end["state"] == "done"
-    assert [f["state"] for f in end["frames"]] == ["done"] * 3 and all(f["png_sha256"] for f in end["frames"])
+    assert [f["state"] for f in end["frames"]] == ["done"] * 3
+    assert all(f["png_sha256"] for f in end["frames"])
     check_frames(sheafd, end)
     assert begun(sheafd, job).count(0) == begun(sheafd, job).count(1) == 1
 
@@ -182,7 +191,9 @@ def test_folders_of_no_job_are_removed(restart: Callable[..., Service]) -> None:
     for folder in (stranger, upload):
         (folder / "scene").mkdir(parents=True)
     restart()
-    assert not stranger.exists() and not upload.exists() and (service.data / "jobs" / job).exists()
+    assert not stranger.exists()
+    assert not upload.exists()
+    assert (service.data / "jobs" / job).exists()
 
 
 def test_without_its_database_no_folder_is_touched(

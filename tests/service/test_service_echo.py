@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
+
 from service import Service, gltf
 
 LONG = "x" * 100_000
@@ -49,7 +50,9 @@ REFUSED: dict[str, Callable[[Service], httpx.Response]] = {
     "a scene's file name": lambda sheafd: sheafd.submit(b"", name=NAME),
     "a file's name": lambda sheafd: sheafd.submit(gltf(), parts=[("file", (NAME, b""))]),
     "a file's absolute name": lambda sheafd: sheafd.submit(gltf(), parts=[("file", ("/" + NAME, b""))]),
-    "a file's name twice": lambda sheafd: sheafd.submit(gltf(), parts=[("file", (f"{NAME[:250]}/{NAME[:250]}", b""))] * 2),
+    "a file's name twice": lambda sheafd: sheafd.submit(
+        gltf(), parts=[("file", (f"{NAME[:250]}/{NAME[:250]}", b""))] * 2
+    ),
     "a part's name": multipart(f'name="{NAME}"'),
     "a parameter twice": multipart(f'name="file"; {NAME}="1"; {NAME}="2"'),
     "a media type": lambda sheafd: sheafd.http.post("/v1/jobs", files=[("scene", ("", b"", "a/" + NAME))]),
@@ -75,14 +78,15 @@ def test_a_refusal_is_short(sheafd: Service, what: str) -> None:
     assert len(reply.content) < 2000
     for text in problem.values():
         if isinstance(text, str):
-            assert "x" * 201 not in text and "\u6728" * 201 not in text
+            assert "x" * 201 not in text
+            assert "\u6728" * 201 not in text
             assert not any(ord(character) < 32 for character in text)
 
 
 def test_a_short_name_is_repeated_whole(sheafd: Service) -> None:
     problem = sheafd.submit(gltf(), {"y" * 200: 1}).json()
-    assert "settings." + "y" * 200 + ": there is no such setting" == problem["detail"]
+    assert problem["detail"] == "settings." + "y" * 200 + ": there is no such setting"
     assert problem["pointer"] == "/" + "y" * 200
     problem = sheafd.submit(gltf(), {"y" * 201: 1}).json()
-    assert "settings." + "y" * 200 + "…: there is no such setting" == problem["detail"]
+    assert problem["detail"] == "settings." + "y" * 200 + "…: there is no such setting"
     assert "pointer" not in problem

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 
 import httpx
 import pytest
+
 from conftest import Gate
 from service import Service, check_problem, gltf
 
@@ -32,7 +33,8 @@ def parse(lines: Iterator[str]) -> Iterator[dict]:
 
 def stream(service: Service, job: str, **headers: str) -> list[dict]:
     with service.http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as reply:
-        assert reply.status_code == 200 and reply.headers["Content-Type"] == "text/event-stream"
+        assert reply.status_code == 200
+        assert reply.headers["Content-Type"] == "text/event-stream"
         return list(parse(reply.iter_lines()))
 
 
@@ -55,7 +57,8 @@ def test_a_stream_tells_everything_and_ends(sheafd: Service, gate: Gate) -> None
     ]
     assert [e["id"] for e in heard] == [str(i) for i in range(1, 8)]
     assert heard[3]["data"]["message"] == "dim"
-    assert heard[4]["data"]["done"] == 1 and heard[4]["data"]["total"] == 2
+    assert heard[4]["data"]["done"] == 1
+    assert heard[4]["data"]["total"] == 2
     assert all(e["data"]["time"] for e in heard)
 
 
@@ -66,7 +69,8 @@ def test_a_stream_resumes_where_it_was(sheafd: Service) -> None:
     for seen in range(len(everything)):
         assert stream(sheafd, job, **{"Last-Event-ID": str(seen)}) == everything[seen:]
     done = sheafd.http.get(f"/v1/jobs/{job}/events", headers={"Last-Event-ID": str(len(everything))})
-    assert done.status_code == 204 and "Content-Length" not in done.headers
+    assert done.status_code == 204
+    assert "Content-Length" not in done.headers
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/events", headers={"Last-Event-ID": "x"}), 400, "malformed-request")
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/events?after=-1"), 400, "malformed-request")
     assert sheafd.http.get(f"/v1/jobs/{job}/events?after=5", headers={"Last-Event-ID": "0"}).text.startswith("retry")
@@ -97,7 +101,8 @@ def test_long_poll(sheafd: Service, gate: Gate) -> None:
     assert poll(0, 3) == {"events": [], "last": 3, "ended": False}
     assert poll(0.01, 3)["events"] == []
     first = poll(0, 0)
-    assert [e["id"] for e in first["events"]] == [1, 2, 3] and first["last"] == 3
+    assert [e["id"] for e in first["events"]] == [1, 2, 3]
+    assert first["last"] == 3
     opener = threading.Thread(target=gate.open)
     opener.start()
     assert poll(30, 3)["events"][0]["event"] == "frame"
@@ -117,7 +122,8 @@ def test_watchers_are_bounded_and_do_not_starve_others(start: Callable[..., Serv
         assert watched.__enter__().status_code == 200
     reply = service.http.get(f"/v1/jobs/{job}/events")
     problem = check_problem(reply, 503, "too-many-streams")
-    assert problem["limit"] == 3 and reply.headers["Retry-After"]
+    assert problem["limit"] == 3
+    assert reply.headers["Retry-After"]
     check_problem(service.http.get(f"/v1/jobs/{job}/events?wait=1&after=9"), 503, "too-many-streams")
     assert service.http.get(f"/v1/jobs/{job}").status_code == 200
     assert "sheaf_event_streams 3" in service.http.get("/metrics").text

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
+
 from service import Service, check_problem, gltf, program
 
 
@@ -37,7 +38,8 @@ def test_unknown_routes_and_methods(sheafd: Service) -> None:
         check_problem(reply, 405, "method-not-allowed")
         assert reply.headers["Allow"] == allow
     options = sheafd.http.options("/v1/jobs")
-    assert options.status_code == 204 and options.headers["Allow"] == "GET, HEAD, OPTIONS, POST"
+    assert options.status_code == 204
+    assert options.headers["Allow"] == "GET, HEAD, OPTIONS, POST"
     check_problem(sheafd.http.request("BREW", "/"), 501, "not-implemented")
 
 
@@ -58,11 +60,13 @@ def test_every_get_route_answers_head_without_a_body(sheafd: Service) -> None:
         "/nope",
     ):
         got, head = sheafd.http.get(path), sheafd.http.head(path)
-        assert head.status_code == got.status_code and head.content == b""
+        assert head.status_code == got.status_code
+        assert head.content == b""
         assert head.headers["Content-Type"] == got.headers["Content-Type"]
         if path not in ("/metrics", "/readyz"):
             assert head.headers["Content-Length"] == got.headers["Content-Length"]
-        assert got.headers["X-Content-Type-Options"] == "nosniff" and got.headers["X-Request-Id"]
+        assert got.headers["X-Content-Type-Options"] == "nosniff"
+        assert got.headers["X-Request-Id"]
 
 
 @pytest.mark.parametrize(
@@ -146,7 +150,8 @@ def test_a_client_that_takes_the_service_for_a_proxy(sheafd: Service) -> None:
 def test_options_of_the_whole_service(sheafd: Service) -> None:
     for target in b"*", b"http://a":
         answer = sheafd.raw(b"OPTIONS " + target + b" HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n")
-        assert status_of(answer) == 204 and b"Allow: DELETE, GET, HEAD, OPTIONS, POST\r\n" in answer
+        assert status_of(answer) == 204
+        assert b"Allow: DELETE, GET, HEAD, OPTIONS, POST\r\n" in answer
 
 
 CHUNKED = (
@@ -190,11 +195,13 @@ def test_pipelined_requests_are_kept_apart(sheafd: Service) -> None:
     first = b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"
     last = b"GET /nope HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"
     answer = sheafd.raw(first + first + last)
-    assert answer.count(b"HTTP/1.1 200") == 2 and answer.count(b"HTTP/1.1 404") == 1
+    assert answer.count(b"HTTP/1.1 200") == 2
+    assert answer.count(b"HTTP/1.1 404") == 1
     # A body that no route reads is not taken for a request: the connection ends.
     unread = b"GET /healthz HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n\r\n" % len(smuggled)
     answer = sheafd.raw(unread + smuggled + last)
-    assert answer.count(b"HTTP/1.1") == 1 and b"Connection: close" in answer
+    assert answer.count(b"HTTP/1.1") == 1
+    assert b"Connection: close" in answer
     assert not any(entry.get("path") == "/smuggled" for entry in sheafd.log)
 
 
@@ -214,7 +221,8 @@ def test_http_1_0(sheafd: Service) -> None:
     job = sheafd.accepted(gltf(), {"frames": 0})
     sheafd.wait(job)
     answer = sheafd.raw(b"GET /v1/jobs/%s/events HTTP/1.0\r\n\r\n" % job.encode())
-    assert b"chunked" not in answer and answer.rstrip().endswith(b"}")
+    assert b"chunked" not in answer
+    assert answer.rstrip().endswith(b"}")
     assert status_of(sheafd.raw(b"GET /healthz HTTP/1.0\r\n\r\n")) == 200
 
 
@@ -262,7 +270,8 @@ def test_connections_are_bounded(start: Callable[..., Service]) -> None:
         connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n")
         assert status_of(connection.recv(65536)) == 200
     answer = service.raw(b"")
-    assert status_of(answer) == 503 and b"Retry-After" in answer
+    assert status_of(answer) == 503
+    assert b"Retry-After" in answer
     for connection in held:
         connection.close()
     while True:  # until the service has seen that they are gone
@@ -289,7 +298,8 @@ def test_the_contract_names_every_route_and_setting(sheafd: Service) -> None:
 
 def test_the_page(sheafd: Service) -> None:
     reply = sheafd.http.get("/")
-    assert reply.headers["Content-Type"].startswith("text/html") and "<title>Sheaf</title>" in reply.text
+    assert reply.headers["Content-Type"].startswith("text/html")
+    assert "<title>Sheaf</title>" in reply.text
     assert "default-src 'none'" in reply.headers["Content-Security-Policy"]
     assert not re.search(r'(src|href)="(https?:)?//', reply.text)
 
@@ -311,13 +321,17 @@ def run(*options: str) -> subprocess.CompletedProcess:
 )
 def test_bad_usage(options: list[str]) -> None:
     ended = run(*options)
-    assert ended.returncode == 2 and ended.stderr.startswith("sheafd: ") and ended.stderr.count("\n") == 1
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("sheafd: ")
+    assert ended.stderr.count("\n") == 1
 
 
 def test_help_version_and_io_failures(tmp_path: pathlib.Path, sheafd: Service) -> None:
-    assert "--retention" in run("--help").stdout and run("--version").stdout.startswith("sheafd ")
+    assert "--retention" in run("--help").stdout
+    assert run("--version").stdout.startswith("sheafd ")
     taken = run("--listen", sheafd.address, "--data", str(tmp_path / "other"))
-    assert taken.returncode == 6 and "in use" in taken.stderr
+    assert taken.returncode == 6
+    assert "in use" in taken.stderr
     (tmp_path / "file").write_text("")
     assert run("--data", str(tmp_path / "file"), "--listen", "127.0.0.1:0").returncode == 6
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+
 from conftest import Gate
 from service import Service, arguments, check_problem, gltf
 
@@ -65,36 +66,18 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
     job = sheafd.accepted(gltf(), settings)
     assert sheafd.wait(job)["state"] == "done"
     told = arguments(sheafd, job, 1)
-    assert told[0] == "render" and told[1].endswith("/scene/scene.gltf")
+    assert told[0] == "render"
+    assert told[1].endswith("/scene/scene.gltf")
     assert told[told.index("--progress") + 1] == "json"
     assert sorted(a for a in told[2:] if "=" in a or a == "--opaque") == sorted(
         [
-            "--frames=1,2",
-            "--fps=25",
-            "--animation=Walk",
-            "--camera-node=1",
-            "--size=32x18",
-            "--quality=draft",
-            "--spp=adaptive:0.01:64",
-            "--filter=triangle",
-            "--depth=3",
-            "--cutoff=0.01",
-            "--strategy=hybrid",
-            "--sort=on",
-            "--primary=trace",
-            "--instances=shared",
-            "--z-background=inf",
-            "--aov=Z,N",
-            "--compression=piz",
-            "--name=shot.####.exr",
-            "--memory=512",
-            "--device=0",
-            "--opaque",
-            "--scene-name=Night",
-            "--environment=0.5,1,2.5",
-            "--count=on",
+            "--frames=1,2", "--fps=25", "--animation=Walk", "--camera-node=1", "--size=32x18",
+            "--quality=draft", "--spp=adaptive:0.01:64", "--filter=triangle", "--depth=3", "--cutoff=0.01",
+            "--strategy=hybrid", "--sort=on", "--primary=trace", "--instances=shared", "--z-background=inf",
+            "--aov=Z,N", "--compression=piz", "--name=shot.####.exr", "--memory=512", "--device=0", "--opaque",
+            "--scene-name=Night", "--environment=0.5,1,2.5", "--count=on",
         ]
-    )
+    )  # fmt: skip
     assert "--preview" not in told
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/1.png"), 404, "not-produced")
 
@@ -166,6 +149,8 @@ def test_what_a_quality_stands_for_is_held_against_the_limits(start: Callable[..
     problem = check_problem(few.submit(gltf(), {"quality": "exact"}), 422, "limit-exceeded")
     assert (problem["pointer"], problem["limit_name"], problem["value"]) == ("/quality", "max-depth", 32)
     assert few.submit(gltf(), {"quality": "exact", "depth": 8}).status_code == 202  # what is given beside it counts
+
+
 def test_a_layer_that_there_is_not_is_refused_with_those_that_there_are(sheafd: Service) -> None:
     problem = check_problem(sheafd.submit(gltf(), {"aov": "Z,motion"}), 422, "bad-settings")
     assert "motion: there is Z, N, P, albedo, UV, id, tests, all" in problem["detail"]
@@ -175,7 +160,8 @@ def test_a_layer_that_there_is_not_is_refused_with_those_that_there_are(sheafd: 
 
 def test_a_key_in_a_pointer_is_escaped(sheafd: Service) -> None:
     problem = check_problem(sheafd.submit(gltf(), {"a/b~c": 1}), 422, "bad-settings")
-    assert problem["pointer"] == "/a~1b~0c" and "settings.a/b~c: " in problem["detail"]
+    assert problem["pointer"] == "/a~1b~0c"
+    assert "settings.a/b~c: " in problem["detail"]
 
 
 def test_a_value_is_never_read_as_an_option(sheafd: Service) -> None:
@@ -195,7 +181,8 @@ def test_idempotency(sheafd: Service) -> None:
     first = sheafd.submit(gltf(), {"frames": 0}, headers=key)
     again = sheafd.submit(gltf(), {"frames": 0}, headers=key)  # another multipart boundary
     assert first.status_code == again.status_code == 202
-    assert first.json()["id"] == again.json()["id"] and again.headers["Idempotent-Replayed"] == "true"
+    assert first.json()["id"] == again.json()["id"]
+    assert again.headers["Idempotent-Replayed"] == "true"
     assert "Idempotent-Replayed" not in first.headers
     check_problem(sheafd.submit(gltf(), {"frames": 1}, headers=key), 422, "idempotency-mismatch")
     assert sheafd.submit(gltf(), {"frames": 0}).json()["id"] != first.json()["id"]
@@ -219,7 +206,8 @@ def test_listing(sheafd: Service) -> None:
         return sheafd.http.get("/v1/jobs", params=query).json()
 
     assert [j["id"] for j in page()["jobs"]] == [failed, *reversed(jobs)]
-    assert "frames" not in page()["jobs"][0] and page()["next"] is None
+    assert "frames" not in page()["jobs"][0]
+    assert page()["next"] is None
     seen: list[str] = []
     cursor: dict = {}
     while True:
@@ -240,7 +228,8 @@ def test_cancel_a_queued_job(sheafd: Service, gate: Gate) -> None:
     sheafd.wait(running, "running")
     queued = sheafd.accepted(gltf())
     reply = sheafd.http.delete(f"/v1/jobs/{queued}")
-    assert reply.status_code == 202 and reply.json()["state"] == "cancelled"
+    assert reply.status_code == 202
+    assert reply.json()["state"] == "cancelled"
     assert sheafd.job(queued)["state"] == "cancelled"
     assert sheafd.http.delete(f"/v1/jobs/{queued}").status_code == 204
     check_problem(sheafd.http.get(f"/v1/jobs/{queued}"), 410, "job-removed")
@@ -254,9 +243,11 @@ def test_cancel_a_running_job_keeps_its_whole_frames(sheafd: Service, gate: Gate
     job = sheafd.accepted(gltf(gates={"1": gate.path}), {"frames": "0-3"})
     sheafd.wait_for_frame(job, 0)
     reply = sheafd.http.delete(f"/v1/jobs/{job}")
-    assert reply.status_code == 202 and reply.json()["cancel_requested"] is True
+    assert reply.status_code == 202
+    assert reply.json()["cancel_requested"] is True
     end = sheafd.wait(job)
-    assert end["state"] == "cancelled" and end["error"] is None
+    assert end["state"] == "cancelled"
+    assert end["error"] is None
     assert [f["state"] for f in end["frames"]] == ["done", "missing", "missing", "missing"]
     assert sheafd.http.get(f"/v1/jobs/{job}/frames/0.exr").status_code == 200
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/1.exr"), 404, "not-produced")
@@ -269,13 +260,16 @@ def test_cancelling_never_removes(sheafd: Service, gate: Gate) -> None:
     queued = sheafd.accepted(gltf(), {"frames": 0})
     sheafd.wait_for_frame(job, 0)
     reply = sheafd.http.post(f"/v1/jobs/{queued}/cancel")
-    assert reply.status_code == 200 and reply.json()["state"] == "cancelled"
+    assert reply.status_code == 200
+    assert reply.json()["state"] == "cancelled"
     reply = sheafd.http.post(f"/v1/jobs/{job}/cancel")
-    assert reply.status_code == 202 and reply.json()["cancel_requested"] is True
+    assert reply.status_code == 202
+    assert reply.json()["cancel_requested"] is True
     assert sheafd.wait(job)["state"] == "cancelled"
     for _ in range(3):  # DELETE would have removed it by now
         reply = sheafd.http.post(f"/v1/jobs/{job}/cancel")
-        assert reply.status_code == 200 and reply.json()["state"] == "cancelled"
+        assert reply.status_code == 200
+        assert reply.json()["state"] == "cancelled"
     done = sheafd.accepted(gltf(), {"frames": 0})
     sheafd.wait(done)
     assert sheafd.http.post(f"/v1/jobs/{done}/cancel").json()["state"] == "done"
@@ -327,7 +321,8 @@ def test_the_queue_is_bounded(start: Callable[..., Service], gate: Gate) -> None
     waiting = service.accepted(gltf())
     reply = service.submit(gltf())
     problem = check_problem(reply, 503, "queue-full")
-    assert problem["limit"] == 1 and int(reply.headers["Retry-After"]) > 0
+    assert problem["limit"] == 1
+    assert int(reply.headers["Retry-After"]) > 0
     check_problem(service.http.get("/readyz"), 503, "not-ready")
     service.http.delete(f"/v1/jobs/{waiting}")
     assert service.submit(gltf()).status_code == 202

@@ -13,6 +13,7 @@ import zlib
 from collections.abc import Callable
 
 import pytest
+
 from conftest import Gate
 from service import PATIENCE, Service, check_problem, glb, gltf, program
 
@@ -44,23 +45,23 @@ SMALL = {
 
 # What is submitted, and the limit that it passes with the value that is told.
 CASES = {
-    "max-upload": (413, dict(scene=gltf() + b" " * (2 << 20)), 1 << 20, None),
-    "max-parts": (413, dict(scene=gltf(), parts=[("file", (str(i), b"")) for i in range(8)]), 8, 9),
+    "max-upload": (413, {"scene": gltf() + b" " * (2 << 20)}, 1 << 20, None),
+    "max-parts": (413, {"scene": gltf(), "parts": [("file", (str(i), b"")) for i in range(8)]}, 8, 9),
     "max-unpacked": (
         413,
-        dict(scene=zipped({"a.gltf": random.Random(1).randbytes(200_000) + b" " * 2_200_000}), name="s.zip"),
+        {"scene": zipped({"a.gltf": random.Random(1).randbytes(200_000) + b" " * 2_200_000}), "name": "s.zip"},
         2 << 20,
         None,
     ),
-    "max-zip-entries": (413, dict(scene=zipped({str(i): b"" for i in range(6)}), name="s.zip"), 5, 6),
-    "max-zip-ratio": (413, dict(scene=zipped({"a.gltf": b" " * 1_900_000}), name="s.zip"), 50, None),
-    "max-frames": (422, dict(scene=gltf(), settings={"frames": "0-10"}), 10, 11),
-    "max-pixels": (422, dict(scene=gltf(), settings={"size": "101x100"}), 10_000, 10_100),
-    "max-spp": (422, dict(scene=gltf(), settings={"spp": 9}), 8, 9),
-    "max-depth": (422, dict(scene=gltf(), settings={"depth": 4}), 3, 4),
-    "max-memory": (422, dict(scene=gltf(), settings={"memory": 257}), 256, 257),
-    "max-triangles": (422, dict(scene=gltf(holds={"triangles": 1001})), 1000, 1001),
-    "max-textures": (422, dict(scene=glb(holds={"texture_bytes": 1048577}), name="s.glb"), 1 << 20, 1048577),
+    "max-zip-entries": (413, {"scene": zipped({str(i): b"" for i in range(6)}), "name": "s.zip"}, 5, 6),
+    "max-zip-ratio": (413, {"scene": zipped({"a.gltf": b" " * 1_900_000}), "name": "s.zip"}, 50, None),
+    "max-frames": (422, {"scene": gltf(), "settings": {"frames": "0-10"}}, 10, 11),
+    "max-pixels": (422, {"scene": gltf(), "settings": {"size": "101x100"}}, 10_000, 10_100),
+    "max-spp": (422, {"scene": gltf(), "settings": {"spp": 9}}, 8, 9),
+    "max-depth": (422, {"scene": gltf(), "settings": {"depth": 4}}, 3, 4),
+    "max-memory": (422, {"scene": gltf(), "settings": {"memory": 257}}, 256, 257),
+    "max-triangles": (422, {"scene": gltf(holds={"triangles": 1001})}, 1000, 1001),
+    "max-textures": (422, {"scene": glb(holds={"texture_bytes": 1048577}), "name": "s.glb"}, 1 << 20, 1048577),
 }
 
 
@@ -73,11 +74,14 @@ def small(start: Callable[..., Service]) -> Service:
 def test_each_limit_answers_with_its_name_the_limit_and_the_value(small: Service, name: str) -> None:
     status, given, limit, value = CASES[name]
     problem = check_problem(small.submit(**given), status, "too-large" if status == 413 else "limit-exceeded")
-    assert problem["limit_name"] == name and problem["limit"] == limit
+    assert problem["limit_name"] == name
+    assert problem["limit"] == limit
     assert problem["value"] == value if value else problem["value"] >= limit
     told = small.http.get("/openapi.json").json()["x-limits"][name]
-    assert told["limit"] == limit and told["answer"].startswith(str(status))
-    assert not list((small.data / "incoming").iterdir()) and not list((small.data / "jobs").iterdir())
+    assert told["limit"] == limit
+    assert told["answer"].startswith(str(status))
+    assert not list((small.data / "incoming").iterdir())
+    assert not list((small.data / "jobs").iterdir())
 
 
 def test_what_keeps_every_limit_is_taken(small: Service) -> None:
@@ -91,14 +95,16 @@ def test_settings_and_cameras_are_bounded(sheafd: Service) -> None:
     for part in ("settings", "camera"):
         reply = sheafd.submit(gltf(), parts=[(part, (None, b" " * (limits[part]["limit"] + 1)))])
         problem = check_problem(reply, 413, "too-large")
-        assert problem["limit_name"] == part and problem["limit"] == limits[part]["limit"] < problem["value"]
+        assert problem["limit_name"] == part
+        assert problem["limit"] == limits[part]["limit"] < problem["value"]
 
 
 def test_the_contract_and_the_help_name_every_limit(sheafd: Service) -> None:
     text = subprocess.run([program("sheafd"), "--help"], capture_output=True, text=True, check=True).stdout
     limits = sheafd.http.get("/openapi.json").json()["x-limits"]
     for name in SMALL:
-        assert f"{name} " in text and name.removeprefix("--") in limits
+        assert f"{name} " in text
+        assert name.removeprefix("--") in limits
     for name, told in limits.items():
         assert name in ("settings", "camera") or f"--{name} " in text, name
         assert told["limit"] > 0 or name == "min-free"
@@ -106,19 +112,22 @@ def test_the_contract_and_the_help_name_every_limit(sheafd: Service) -> None:
 
 def test_the_engines_own_limits_count_too(sheafd: Service) -> None:
     problem = check_problem(sheafd.submit(gltf(inspect_exit=5)), 422, "limit-exceeded")
-    assert "scene.gltf" in problem["detail"] and str(sheafd.data) not in problem["detail"]
+    assert "scene.gltf" in problem["detail"]
+    assert str(sheafd.data) not in problem["detail"]
 
 
 def test_a_scene_that_does_not_load_in_time_is_refused(start: Callable[..., Service], gate: Gate) -> None:
     service = start("--max-inspect", "1")
     problem = check_problem(service.submit(gltf(inspect_gate=gate.path)), 422, "limit-exceeded")
-    assert problem["limit_name"] == "max-inspect" and problem["limit"] == 1
+    assert problem["limit_name"] == "max-inspect"
+    assert problem["limit"] == 1
 
 
 def test_a_bad_scene_is_its_jobs_own_failure(sheafd: Service) -> None:
     bad = gltf(inspect_exit=3, exit={"code": 3, "message": "scene.gltf: nodes[0] is bad"})
     end = sheafd.wait(sheafd.accepted(bad, {"frames": 0}))
-    assert end["state"] == "failed" and end["error"]["code"] == "bad-scene"
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "bad-scene"
 
 
 def test_without_such_limits_nobody_looks(start: Callable[..., Service], gate: Gate) -> None:
@@ -135,18 +144,21 @@ def test_a_service_that_stops_does_not_wait_for_a_scene(start: Callable[..., Ser
     head = b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\n"
     with socket.create_connection((host, int(port)), PATIENCE) as connection:
         connection.sendall(head + b"Content-Length: %d\r\n\r\n" % len(body) + body)
-        with open(gate.path, "wb"):  # once the inspection waits there
+        with pathlib.Path(gate.path).open("wb"):  # once the inspection waits there
             assert service.stop() == 0
 
 
-ASKING = b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
+ASKING = (
+    b"POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Type: multipart/form-data; boundary=b\r\nExpect: 100-continue\r\n"
+)
 
 
 def refusal_before_the_body(service: Service) -> dict:
     """The problem that answers a head whose body is never sent; a service that wants to read it says 100 first."""
     answer = service.raw(ASKING + b"Content-Length: 1000000\r\n\r\n")
     head, _, body = answer.partition(b"\r\n\r\n")
-    assert head.startswith(b"HTTP/1.1 503 ") and b"Retry-After: " in head, answer
+    assert head.startswith(b"HTTP/1.1 503 "), answer
+    assert b"Retry-After: " in head, answer
     return json.loads(body)
 
 
@@ -158,7 +170,7 @@ def test_no_upload_is_read_in_vain(start: Callable[..., Service], gate: Gate) ->
     with socket.create_connection((host, int(port)), PATIENCE) as connection:
         head = ASKING.replace(b"Expect: 100-continue", b"Connection: close")
         connection.sendall(head + b"Content-Length: %d\r\n\r\n" % len(body) + body)
-        with open(gate.path, "wb"):  # once the inspection waits there
+        with pathlib.Path(gate.path).open("wb"):  # once the inspection waits there
             assert refusal_before_the_body(service)["type"].endswith("busy")
             assert service.http.get("/v1/jobs").json()["jobs"] == []
         assert connection.recv(65536).startswith(b"HTTP/1.1 202 ")
@@ -223,5 +235,6 @@ def test_the_engine_knows_what_a_scene_holds(
 ) -> None:
     service = start("--" + option, most, sheaf=program("sheaf"))
     problem = check_problem(service.submit(passes, name="a.glb"), 422, "limit-exceeded")
-    assert problem["limit_name"] == option and problem["value"] == value > problem["limit"]
+    assert problem["limit_name"] == option
+    assert problem["value"] == value > problem["limit"]
     assert service.submit(fits, name="a.glb").status_code == 202

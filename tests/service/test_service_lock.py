@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One data folder, one service; that the lock of a killed one goes with it is held by tests/unit/server_files_test.cpp."""
+"""One data folder, one service; that the lock of a killed one goes with it is shown by unit/server_files_test.cpp."""
 
 import fcntl
 import json
@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Iterator
 
 import pytest
+
 from service import FAKE, PATIENCE, program
 
 

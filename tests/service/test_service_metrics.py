@@ -20,8 +20,10 @@ def test_metrics_are_well_formed(sheafd: Service) -> None:
     assert reply.headers["Content-Type"].startswith("text/plain; version=0.0.4")
     sample = re.compile(r'^[a-z_]+(\{[a-z_]+="[^"]*"(,[a-z_]+="[^"]*")*\})? -?[0-9.e+-]+$')
     lines = [line for line in reply.text.splitlines() if not line.startswith("#")]
-    assert lines and all(sample.match(line) for line in lines)
-    assert 'sheaf_jobs{state="done"} 1' in lines and "sheaf_frames_rendered_total 4" in lines
+    assert lines
+    assert all(sample.match(line) for line in lines)
+    assert 'sheaf_jobs{state="done"} 1' in lines
+    assert "sheaf_frames_rendered_total 4" in lines
     assert 'sheaf_http_requests_total{method="POST",status="202"} 1' in lines
 
 

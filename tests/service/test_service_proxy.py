@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 
 import httpx
 import pytest
+
 from conftest import Gate
 from service import PATIENCE, Service, check_problem, gltf
 
@@ -52,7 +53,8 @@ def proxied(start: Callable[..., Service], tmp_path: pathlib.Path) -> Iterator[t
                 client.get("/healthz")
                 break
             except httpx.ConnectError:
-                assert process.poll() is None and time.monotonic() < deadline
+                assert process.poll() is None
+                assert time.monotonic() < deadline
         yield service, client
     process.terminate()
     assert process.wait(PATIENCE) == 0
@@ -62,7 +64,8 @@ def test_a_job_goes_through_and_its_events_are_not_held_back(proxied: tuple[Serv
     service, client = proxied
     scene = gltf(gates={"1": gate.path})
     reply = client.post("/v1/jobs", files=[("scene", ("s.gltf", scene)), ("settings", (None, '{"frames": "0-1"}'))])
-    assert reply.status_code == 202 and "Strict-Transport-Security" in reply.headers
+    assert reply.status_code == 202
+    assert "Strict-Transport-Security" in reply.headers
     job = reply.json()["id"]
     with client.stream("GET", f"/v1/jobs/{job}/events") as events:
         seen = []
@@ -70,12 +73,13 @@ def test_a_job_goes_through_and_its_events_are_not_held_back(proxied: tuple[Serv
             seen.append(line)
             if line == "event: frame" and seen.count(line) == 1:
                 gate.open()  # the first frame's event is here while the second is not rendered yet
-    assert seen.count("event: frame") == 2 and service.job(job)["state"] == "done"
+    assert seen.count("event: frame") == 2
+    assert service.job(job)["state"] == "done"
     assert client.get(f"/v1/jobs/{job}/frames/1.exr").content.startswith(b"v/1\x01")
 
 
 def test_an_upload_that_is_too_large_is_refused_by_the_service_itself(start: Callable[..., Service], proxied) -> None:
-    service, client = proxied
+    _, client = proxied
     parts = [("scene", ("s.gltf", gltf())), ("settings", (None, b" " * (2 << 20)))]
     check_problem(client.post("/v1/jobs", files=parts), 413, "too-large")
 
@@ -83,6 +87,7 @@ def test_an_upload_that_is_too_large_is_refused_by_the_service_itself(start: Cal
 def test_who_asks_too_often_is_told_to_wait(proxied: tuple[Service, httpx.Client]) -> None:
     _, client = proxied
     statuses = [client.get("/healthz").status_code for _ in range(400)]
-    assert statuses[0] == 200 and set(statuses) == {200, 429}
+    assert statuses[0] == 200
+    assert set(statuses) == {200, 429}
     sent = [client.post("/v1/jobs").status_code for _ in range(40)]
     assert 429 in sent

@@ -10,6 +10,7 @@ import subprocess
 from collections.abc import Callable
 
 import pytest
+
 from service import Service, check_problem, program
 
 
@@ -98,15 +99,19 @@ def test_frames_over_http_are_those_of_the_command_line(real: Service, tmp_path:
     assert len(set(frames.values())) == 3  # it moves
 
     stats = real.http.get(f"/v1/jobs/{job}/stats.json").json()
-    assert stats["schema"] == 1 and [f["frame"] for f in stats["frames"]] == [0, 12, 24]
+    assert stats["schema"] == 1
+    assert [f["frame"] for f in stats["frames"]] == [0, 12, 24]
     assert len(real.http.get(f"/v1/jobs/{job}/stats.csv").text.splitlines()) == 4
 
 
 def test_a_bad_scene_fails_with_the_engines_reason(real: Service) -> None:
     scene, files = parts(triangle(indices=(0, 1, 7)))
     end = real.wait(real.accepted(scene, {"frames": 0, "size": "8x8"}, parts=files))
-    assert end["state"] == "failed" and end["error"]["code"] == "bad-scene" and end["error"]["exit_code"] == 3
-    assert "scene.gltf" in end["error"]["message"] and str(real.data) not in end["error"]["message"]
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "bad-scene"
+    assert end["error"]["exit_code"] == 3
+    assert "scene.gltf" in end["error"]["message"]
+    assert str(real.data) not in end["error"]["message"]
 
 
 def test_every_setting_is_one_of_the_engine(real: Service) -> None:
@@ -146,7 +151,8 @@ def test_cancelling_a_long_render(real: Service) -> None:
     real.wait_for_frame(job, 0)
     assert real.http.delete(f"/v1/jobs/{job}").status_code == 202
     end = real.wait(job)
-    assert end["state"] == "cancelled" and 1 <= end["progress"]["done"] < 10000
+    assert end["state"] == "cancelled"
+    assert 1 <= end["progress"]["done"] < 10000
     done = [f for f in end["frames"] if f["state"] == "done"]
     assert real.http.get(done[-1]["exr"]).status_code == 200
     assert not [p for p in (real.data / "jobs" / job / "frames").iterdir() if p.name.endswith(".part")]

@@ -7,6 +7,7 @@ import io
 import zipfile
 
 import pytest
+
 from conftest import Gate
 from service import Service, check_problem, gltf
 
@@ -20,18 +21,24 @@ def done(sheafd: Service) -> str:
 
 def test_a_frame_and_its_etag(sheafd: Service, done: str) -> None:
     reply = sheafd.http.get(f"{done}/frames/1.exr")
-    assert reply.status_code == 200 and reply.headers["Content-Type"] == "image/x-exr"
+    assert reply.status_code == 200
+    assert reply.headers["Content-Type"] == "image/x-exr"
     frame = sheafd.http.get(done).json()["frames"][1]
-    assert frame["sha256"] == hashlib.sha256(reply.content).hexdigest() and frame["bytes"] == len(reply.content)
+    assert frame["sha256"] == hashlib.sha256(reply.content).hexdigest()
+    assert frame["bytes"] == len(reply.content)
     etag = reply.headers["ETag"]
-    assert etag.startswith('"') and etag != sheafd.http.get(f"{done}/frames/2.exr").headers["ETag"]
+    assert etag.startswith('"')
+    assert etag != sheafd.http.get(f"{done}/frames/2.exr").headers["ETag"]
     for value, status in ((etag, 304), (f'"x", W/{etag}', 304), ("*", 304), ('"x"', 200)):
         again = sheafd.http.get(f"{done}/frames/1.exr", headers={"If-None-Match": value})
-        assert again.status_code == status and again.headers["ETag"] == etag
+        assert again.status_code == status
+        assert again.headers["ETag"] == etag
         assert again.content == (reply.content if status == 200 else b"")
     head = sheafd.http.head(f"{done}/frames/1.exr")
-    assert head.status_code == 200 and head.content == b""
-    assert head.headers["Content-Length"] == str(len(reply.content)) and head.headers["ETag"] == etag
+    assert head.status_code == 200
+    assert head.content == b""
+    assert head.headers["Content-Length"] == str(len(reply.content))
+    assert head.headers["ETag"] == etag
 
 
 def test_ranges(sheafd: Service, done: str) -> None:
@@ -66,7 +73,8 @@ def test_ranges(sheafd: Service, done: str) -> None:
 
 def test_previews(sheafd: Service, done: str) -> None:
     reply = sheafd.http.get(f"{done}/frames/0.png")
-    assert reply.status_code == 200 and reply.headers["Content-Type"] == "image/png"
+    assert reply.status_code == 200
+    assert reply.headers["Content-Type"] == "image/png"
     assert reply.content.startswith(b"\x89PNG")
 
 
@@ -91,7 +99,8 @@ def test_frames_that_are_not_there(sheafd: Service, done: str, gate: Gate) -> No
 def test_frames_the_client_did_not_name(sheafd: Service, gate: Gate) -> None:
     job = sheafd.accepted(gltf(frames=2, gates={"1": gate.path}))
     sheafd.wait_for_frame(job, 0)
-    assert [f["frame"] for f in sheafd.job(job)["frames"]] == [0] and sheafd.job(job)["progress"]["total"] == 2
+    assert [f["frame"] for f in sheafd.job(job)["frames"]] == [0]
+    assert sheafd.job(job)["progress"]["total"] == 2
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/7.exr"), 409, "not-rendered")
     gate.open()
     sheafd.wait(job)
@@ -100,7 +109,8 @@ def test_frames_the_client_did_not_name(sheafd: Service, gate: Gate) -> None:
 
 def test_the_archive(sheafd: Service, done: str) -> None:
     reply = sheafd.http.get(f"{done}/frames.zip")
-    assert reply.status_code == 200 and int(reply.headers["Content-Length"]) == len(reply.content)
+    assert reply.status_code == 200
+    assert int(reply.headers["Content-Length"]) == len(reply.content)
     with zipfile.ZipFile(io.BytesIO(reply.content)) as zipped:
         assert zipped.testzip() is None
         assert zipped.namelist() == ["scene.0000.exr", "scene.0001.exr", "scene.0002.exr"]
@@ -108,7 +118,8 @@ def test_the_archive(sheafd: Service, done: str) -> None:
             assert zipped.read(f"scene.000{i}.exr") == sheafd.http.get(f"{done}/frames/{i}.exr").content
         assert {i.date_time for i in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     again = sheafd.http.get(f"{done}/frames.zip", headers={"Range": "bytes=0-1"})
-    assert again.status_code == 200 and again.content == reply.content
+    assert again.status_code == 200
+    assert again.content == reply.content
     assert sheafd.http.get(f"{done}/frames.zip", headers={"If-None-Match": reply.headers["ETag"]}).status_code == 304
     head = sheafd.http.head(f"{done}/frames.zip")
     assert head.headers["Content-Length"] == reply.headers["Content-Length"]
@@ -128,14 +139,18 @@ def test_the_archive_of_a_failed_job_has_its_whole_frames(sheafd: Service) -> No
 
 def test_stats(sheafd: Service, done: str) -> None:
     stats = sheafd.http.get(f"{done}/stats.json")
-    assert stats.headers["Content-Type"] == "application/json" and stats.json()["schema"] == 1
+    assert stats.headers["Content-Type"] == "application/json"
+    assert stats.json()["schema"] == 1
     assert sheafd.http.get(f"{done}/stats").json() == stats.json()
     table = sheafd.http.get(f"{done}/stats.csv")
     assert table.headers["Content-Type"].startswith("text/csv")
     rows = list(csv.DictReader(io.StringIO(table.text)))
     assert [row["frame"] for row in rows] == ["0", "1", "2"]
-    assert rows[0]["raster_ms"] == "0.5" and rows[0]["sort_ms"] == "" and rows[0]["rays_primary"] == "4"
-    assert rows[0]["ray_triangle_primary"] == "2" and rows[0]["brute_force"] == "8"
+    assert rows[0]["raster_ms"] == "0.5"
+    assert rows[0]["sort_ms"] == ""
+    assert rows[0]["rays_primary"] == "4"
+    assert rows[0]["ray_triangle_primary"] == "2"
+    assert rows[0]["brute_force"] == "8"
 
 
 def test_a_frame_that_was_changed_on_disk_is_not_passed_off(sheafd: Service, done: str) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
+
 from service import Service, arguments, check_problem, glb, gltf
 
 
@@ -65,7 +66,8 @@ def test_scenes_by_name_media_type_and_content(sheafd: Service) -> None:
 def test_a_zipped_scene(sheafd: Service) -> None:
     zipped = archive({"dir/": b"", "scene.gltf": gltf(), "dir/a.bin": b"1", "__MACOSX/._scene.gltf": b"?"})
     job = sheafd.wait(sheafd.accepted(zipped, name="scene.zip"))
-    assert job["state"] == "done" and job["scene"]["name"] == "scene.gltf"
+    assert job["state"] == "done"
+    assert job["scene"]["name"] == "scene.gltf"
     assert not (sheafd.data / "jobs" / job["id"] / "upload.zip").exists()
 
 
@@ -113,7 +115,10 @@ def test_bad_archives(sheafd: Service, entries: dict[str, bytes]) -> None:
             },
             "model/a.gltf",
         ),
-        ({"model/a.gltf": gltf(), "model/tex/a.bin": b"1", "model/old/b.gltf": gltf(), "model/old/c.glb": b""}, "model/a.gltf"),
+        (
+            {"model/a.gltf": gltf(), "model/tex/a.bin": b"1", "model/old/b.gltf": gltf(), "model/old/c.glb": b""},
+            "model/a.gltf",
+        ),
         ({"source/a.GLTF": gltf(), "source/tex/a.bin": b"1", "textures/b.png": b"2"}, "source/a.GLTF"),
     ],
 )
@@ -171,14 +176,17 @@ def test_a_damaged_archive(sheafd: Service) -> None:
 def test_archive_bombs(start: Callable[..., Service]) -> None:
     service = start("--max-unpacked", "8", "--max-zip-entries", "20", "--max-zip-ratio", "100")
     ratio = check_problem(service.submit(archive({"a.gltf": b" " * 4_000_000}), name="s.zip"), 413, "too-large")
-    assert ratio["limit"] == 100 and "ratio" in ratio["detail"]
+    assert ratio["limit"] == 100
+    assert "ratio" in ratio["detail"]
     many = archive({f"{i}": b"" for i in range(21)})
     assert check_problem(service.submit(many, name="s.zip"), 413, "too-large")["limit"] == 20
     size = archive({"a.gltf": bytes(range(256)) * 40_000}, zipfile.ZIP_STORED)
     assert check_problem(service.submit(size, name="s.zip"), 413, "too-large")["limit"] == 8 << 20
 
 
-@pytest.mark.parametrize("name", ["../x.bin", "/etc/x", "a/../b", "a//b", "x\\..\\y", "C:\\x", "\\x", "", ".", "a/" * 20 + "x", "n" * 300])
+@pytest.mark.parametrize(
+    "name", ["../x.bin", "/etc/x", "a/../b", "a//b", "x\\..\\y", "C:\\x", "\\x", "", ".", "a/" * 20 + "x", "n" * 300]
+)
 def test_bad_file_names(sheafd: Service, name: str) -> None:
     body = (
         b'--b\r\nContent-Disposition: form-data; name="scene"; filename="s.gltf"\r\n\r\n{}\r\n'
@@ -209,7 +217,8 @@ def test_bad_multipart(sheafd: Service) -> None:
     check_problem(sheafd.http.post("/v1/jobs", files=[("settings", (None, "{}"))]), 422, "bad-scene")
     twice = [("file", ("a", b"1")), ("file", ("a", b"2"))]
     check_problem(sheafd.submit(gltf(), parts=twice), 422, "bad-scene")
-    assert not list((sheafd.data / "incoming").iterdir()) and not list((sheafd.data / "jobs").iterdir())
+    assert not list((sheafd.data / "incoming").iterdir())
+    assert not list((sheafd.data / "jobs").iterdir())
 
 
 def test_uploads_are_bounded(start: Callable[..., Service]) -> None:
@@ -251,7 +260,8 @@ def test_an_upload_that_changed_on_its_way_is_refused_whole(sheafd: Service, at:
     for content in (bytes(body), iter([bytes(body[:100]), bytes(body[100:])])):  # by length, and in chunks
         problem = check_problem(sheafd.http.post("/v1/jobs", content=content, headers=headers), 422, "digest-mismatch")
         assert hashlib.sha256(body).hexdigest() in problem["detail"]
-    assert not list((sheafd.data / "incoming").iterdir()) and not list((sheafd.data / "jobs").iterdir())
+    assert not list((sheafd.data / "incoming").iterdir())
+    assert not list((sheafd.data / "jobs").iterdir())
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 
 import pytest
+
 from conftest import Gate
 from service import Service, check_problem, gltf
 
@@ -47,7 +48,8 @@ def test_a_crash_fails_its_job_and_no_other(sheafd: Service, number: signal.Sign
     crash = sheafd.accepted(gltf(signal=int(number), at=1), {"frames": "0-2"})
     after = sheafd.accepted(gltf(), {"frames": 0})
     end = sheafd.wait(crash)
-    assert end["state"] == "failed" and end["error"]["code"] == "worker-crashed"
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "worker-crashed"
     assert end["error"]["message"] == f"worker ended by signal {int(number)} ({number.name})"
     assert end["error"]["signal"] == number
     assert [f["state"] for f in end["frames"]] == ["done", "missing", "missing"]
@@ -73,17 +75,21 @@ def test_garbage_is_logged_and_harmless(sheafd: Service) -> None:
     ]
     job = sheafd.accepted(gltf(lines=lines), {"frames": "0-1"})
     end = sheafd.wait(job)
-    assert end["state"] == "done" and [f["frame"] for f in end["frames"]] == [0, 1]
+    assert end["state"] == "done"
+    assert [f["frame"] for f in end["frames"]] == [0, 1]
     log = sheafd.http.get(f"/v1/jobs/{job}/log").text
-    assert "not an event: hello" in log and "passwd is not there" in log
+    assert "not an event: hello" in log
+    assert "passwd is not there" in log
     assert str(sheafd.data) not in log
 
 
 def test_a_worker_that_lies_about_frames(sheafd: Service) -> None:
     job = sheafd.accepted(gltf(silent_frames=[1]), {"frames": "0-2"})
     end = sheafd.wait(job)
-    assert end["state"] == "failed" and end["error"]["code"] == "incomplete"
-    assert end["error"]["exit_code"] == 0 and [f["state"] for f in end["frames"]] == ["done", "missing", "done"]
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "incomplete"
+    assert end["error"]["exit_code"] == 0
+    assert [f["state"] for f in end["frames"]] == ["done", "missing", "done"]
     check_problem(sheafd.http.get(f"/v1/jobs/{job}/frames/1.exr"), 404, "not-produced")
     nothing = sheafd.accepted(gltf(frames=0, no_start=True))
     assert sheafd.wait(nothing)["error"]["code"] == "incomplete"
@@ -94,7 +100,8 @@ def test_a_flood_is_cut(start: Callable[..., Service]) -> None:
     job = service.accepted(gltf(flood=20), {"frames": 0})
     assert service.wait(job)["state"] == "done"
     log = service.http.get(f"/v1/jobs/{job}/log").text
-    assert 60_000 < len(log) < 70_000 and log.endswith("left out\n")
+    assert 60_000 < len(log) < 70_000
+    assert log.endswith("left out\n")
 
 
 # The default is asked of nobody but the clock: a cancelled job ends within a second, and what a busy machine adds.
@@ -107,9 +114,11 @@ def test_a_cancelled_job_does_not_wait_for_its_frame(
     service.wait_for_frame(job, 0)
     began = time.monotonic()
     assert service.http.delete(f"/v1/jobs/{job}").status_code == 202
-    assert service.job(job)["state"] == "running" and service.job(job)["cancel_requested"]
+    assert service.job(job)["state"] == "running"
+    assert service.job(job)["cancel_requested"]
     end = service.wait(job)
-    assert end["state"] == "cancelled" and [frame["state"] for frame in end["frames"]] == ["done", "missing"]
+    assert end["state"] == "cancelled"
+    assert [frame["state"] for frame in end["frames"]] == ["done", "missing"]
     assert least < time.monotonic() - began < most
 
 
@@ -159,15 +168,18 @@ def test_workers_get_none_of_the_services_descriptors(start: Callable[..., Servi
     job = service.accepted(gltf(), {"frames": 0})
     assert service.wait(job)["state"] == "failed"
     log = service.http.get(f"/v1/jobs/{job}/log").text
-    assert "/dev/null" in log and "socket" not in log and "eventfd" not in log and "eventpoll" not in log
+    assert "/dev/null" in log
+    assert "socket" not in log
+    assert "eventfd" not in log
+    assert "eventpoll" not in log
 
 
 def test_a_worker_that_cannot_start(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
     service = start(sheaf=tmp_path / "missing")
     end = service.wait(service.accepted(gltf(), {"frames": 0}))
-    assert (
-        end["state"] == "failed" and end["error"]["code"] == "worker-missing" and "missing" in end["error"]["message"]
-    )
+    assert end["state"] == "failed"
+    assert end["error"]["code"] == "worker-missing"
+    assert "missing" in end["error"]["message"]
 
 
 def test_jobs_run_side_by_side(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
@@ -204,7 +216,8 @@ def test_readiness_follows_the_device(start: Callable[..., Service]) -> None:
     while "still being looked for" in (reply := service.http.get("/readyz")).text:
         pass
     problem = check_problem(reply, 503, "not-ready")
-    assert problem["checks"]["device"] != "ok" and problem["checks"]["queue"] == "ok"
+    assert problem["checks"]["device"] != "ok"
+    assert problem["checks"]["queue"] == "ok"
     good = start()
     while "still being looked for" in (reply := good.http.get("/readyz")).text:
         pass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The drawing of the layers in docs/architecture.md is true: no file includes a header of a folder that its own does not use.
+"""The drawing of the layers in docs/architecture.md is true: no file includes a header that its own folder may not use.
 
 The allowed uses are the arrows of the document's first drawing and what follows from them transitively.
 """
