@@ -1,27 +1,43 @@
 # SPDX-License-Identifier: MIT
-# The table of shader variants: name, source, defines.
-foreach(stem animate_vertices animate_triangles objects_refit objects_spheres generate_primary generate_begin generate
-             hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill rays_hierarchy
-             traverse_single traverse_bundles traverse_pairs intersect_pairs intersect_brute shade
-             resolve layers objects_boxes traverse_query packets_keys packets_frustums walk_begin pairs_open pairs_ranges
-             intersect_packets classify_bounds classify_keys classify_begin classify_frustums classify_stops
-             classify_candidates classify_cuts dump_triangles raster_spans)
-  sheaf_shader(${stem} ${stem}.comp)
-endforeach()
-sheaf_shader(traverse_packets traverse_single.comp PACKETS)
-sheaf_shader(raster_vert raster.vert)
-sheaf_shader(raster_frag raster.frag)
+# The table of shader variants: name, source, defines; a kernel has the name of its source.
+function(sheaf_kernels folder)
+  foreach(stem IN LISTS ARGN)
+    sheaf_shader(${stem} ${folder}/${stem}.comp)
+  endforeach()
+  foreach(list spirv_headers registry_includes registry_entries)
+    set(${list} "${${list}}" PARENT_SCOPE)
+  endforeach()
+endfunction()
 
-# One scan, many elements: scan_elements.glsl says what each scans.
+sheaf_kernels(animate animate_vertices animate_triangles)
+sheaf_kernels(objects objects_refit objects_spheres objects_boxes dump_triangles)
+sheaf_kernels(raster raster_spans)
+sheaf_shader(raster_vert raster/raster.vert)
+sheaf_shader(raster_frag raster/raster.frag)
+sheaf_kernels(shade generate_primary generate_begin generate shade resolve layers)
+sheaf_kernels(lists hash_bounds hash compress_sizes sort_count sort_spine sort_scatter decompress_fill)
+sheaf_kernels(trace/common rays_hierarchy)
+sheaf_kernels(trace/single traverse_single)
+sheaf_shader(traverse_packets trace/single/traverse_single.comp PACKETS)
+sheaf_kernels(trace/bundles traverse_bundles)
+sheaf_kernels(trace/pairs traverse_pairs intersect_pairs)
+sheaf_kernels(trace/cells walk_begin pairs_open pairs_ranges intersect_packets)
+sheaf_kernels(trace/frustum packets_keys packets_frustums)
+sheaf_kernels(trace/classify classify_bounds classify_keys classify_begin classify_frustums classify_stops classify_candidates
+              classify_cuts)
+sheaf_kernels(trace/brute intersect_brute)
+sheaf_kernels(trace/query traverse_query)
+
+# One scan, many elements: lists/scan_elements.glsl says what each scans.
 foreach(scan COMPACT COMPRESS STARTS SEGMENTED PAIRS PLAIN PLAIN_SEGMENTED)
   string(TOLOWER ${scan} stem)
-  sheaf_shader(${stem}_reduce scan_reduce.comp SCAN_${scan})
-  sheaf_shader(${stem}_spine scan_spine.comp SCAN_${scan})
-  sheaf_shader(${stem}_scatter scan_scatter.comp SCAN_${scan})
+  sheaf_shader(${stem}_reduce lists/scan_reduce.comp SCAN_${scan})
+  sheaf_shader(${stem}_spine lists/scan_spine.comp SCAN_${scan})
+  sheaf_shader(${stem}_scatter lists/scan_scatter.comp SCAN_${scan})
 endforeach()
 foreach(scan PACKETS OPEN DIVIDE CANDIDATES CLASS_PACKETS)
   string(TOLOWER ${scan} stem)
-  sheaf_shader(${stem}_reduce scan_reduce.comp SCAN_CELLS SCAN_${scan})
-  sheaf_shader(${stem}_spine scan_spine.comp SCAN_CELLS SCAN_${scan})
-  sheaf_shader(${stem}_scatter scan_scatter.comp SCAN_CELLS SCAN_${scan})
+  sheaf_shader(${stem}_reduce lists/scan_reduce.comp SCAN_CELLS SCAN_${scan})
+  sheaf_shader(${stem}_spine lists/scan_spine.comp SCAN_CELLS SCAN_${scan})
+  sheaf_shader(${stem}_scatter lists/scan_scatter.comp SCAN_CELLS SCAN_${scan})
 endforeach()

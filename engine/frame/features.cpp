@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "interface/shared.h"
 #include "scene/pose.hpp"
-#include "shared.h"
 
 namespace sheaf {
 namespace {

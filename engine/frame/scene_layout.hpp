@@ -11,8 +11,8 @@
 #include "frame/features.hpp"
 #include "frame/scene_parts.hpp"
 #include "hierarchy/object_hierarchy.hpp"
+#include "interface/shared.h"
 #include "scene/scene.hpp"
-#include "shared.h"
 
 namespace sheaf {
 

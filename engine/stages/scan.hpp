@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reduce, spine, scatter: the three kernels of one scan (shaders/scan.glsl), dispatched over blocks that the device
-// counted.
+// Reduce, spine, scatter: the three kernels of one scan (shaders/lists/scan.glsl), dispatched over blocks that the
+// device counted.
 #pragma once
 
 #include <string>

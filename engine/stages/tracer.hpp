@@ -24,10 +24,12 @@ struct TraceContext {
   bool counted;
 };
 
-/// Specialization constants of every kernel that intersects (shaders/candidate.glsl, counting.glsl, textures.glsl).
+/// Specialization constants of every kernel that intersects (shaders/trace/common/candidate.glsl, counting.glsl,
+/// textures.glsl).
 [[nodiscard]] std::vector<SpecConstant> candidate_constants(const TraceContext& context, bool any_hit);
 
-/// Of kernels whose workgroup is a subgroup that carries so many rays at most (shaders/bundle_rays.glsl, lanes.glsl).
+/// Of kernels whose workgroup is a subgroup that carries so many rays at most (shaders/trace/bundles/bundle_rays.glsl,
+/// lanes.glsl).
 [[nodiscard]] std::vector<SpecConstant> lane_constants(const Device& device, std::uint32_t rays);
 
 class Tracer {

@@ -28,7 +28,7 @@ struct DeviceLimits {
   std::uint32_t groups_x = 65535;
   float timestamp_ns = 1;
   bool cpu = false;
-  std::uint32_t workers = 0;  // threads of a CPU device, between which it divides a dispatch (shaders/dealing.h)
+  std::uint32_t workers = 0;  // threads of a CPU device, between which it divides a dispatch (remap_workgroup.h)
   std::uint32_t bundle = 64;  // rays of a bundle of `hybrid`
   bool ray_query = false;
 };

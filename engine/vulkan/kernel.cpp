@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "core/cpu_time.hpp"
-#include "shared.h"
+#include "interface/shared.h"
 
 namespace sheaf {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "shared.h"
+#include "interface/shared.h"
 #include "vulkan/buffer.hpp"
 #include "vulkan/kernel.hpp"
 

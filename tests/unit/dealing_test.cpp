@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dealing.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
+
+#include "interface/remap_workgroup.h"
 
 namespace sheaf {
 namespace {

@@ -132,7 +132,7 @@ inline std::uint32_t blocks_of(std::uint64_t items, std::uint32_t size = gpu::SC
   return static_cast<std::uint32_t>((items + size - 1) / size);
 }
 
-/// Words of an indirect-dispatch record that says so many workgroups, as shaders/args.glsl folds them.
+/// Words of an indirect-dispatch record that says so many workgroups, as shaders/lib/args.glsl folds them.
 inline void set_args(std::vector<std::uint32_t>& args, std::uint32_t record, std::uint32_t groups) {
   args[std::size_t{record} * 3] = std::min(groups, 32768U);
   args[std::size_t{record} * 3 + 1] = (groups + 32767) / 32768;
@@ -145,7 +145,7 @@ struct TestRay {
   std::uint32_t pixel = 0, medium = 0;
 };
 
-/// As shaders/rays.glsl lays out a list of `capacity` slots; slots past the rays hold none.
+/// As shaders/lists/rays.glsl lays out a list of `capacity` slots; slots past the rays hold none.
 inline std::vector<float> pack_rays(const std::vector<TestRay>& rays, std::uint32_t capacity) {
   std::vector<float> words(std::size_t{gpu::RAY_WORDS + 1} * capacity, 0.0F);
   auto put = [&](std::uint32_t word, std::size_t slot, auto value) {

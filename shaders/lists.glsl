@@ -1,2 +1,0 @@
-// SPDX-License-Identifier: MIT
-BUFFER(ROLE_COUNTERS, coherent, uint, counters);

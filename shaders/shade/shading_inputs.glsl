@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What all lanes of a subgroup want alike, as the hits of neighbouring rays mostly do, is read once, a pair of words a lane, and handed
+// round: on a CPU device every load of a lane's own is a gather, and an instance and its material are thirty of them. Lanes that want
+// another read theirs after that. All lanes are active; one without a hit stands in with another's.
+#ifndef SHEAF_SHADING_INPUTS_GLSL
+#define SHEAF_SHADING_INPUTS_GLSL
+layout(constant_id = SPEC_LANES) const uint LANES = 8;
+#include "lib/lanes.glsl"
+const bool TOGETHER = WORKERS > 0u && LANES >= 8u;
+
+#define LOAD_TOGETHER(pairs, count, buffer_at, offset) \
+  { \
+    uvec2 rows_[((count) + 7u) / 8u]; \
+    [[unroll]] for (uint r_ = 0u; r_ < ((count) + 7u) / 8u; ++r_) \
+      rows_[r_] = load_pair(buffer_at, offset, min(8u * r_ + (gl_SubgroupInvocationID & 7u), (count) - 1u)); \
+    [[unroll]] for (uint k_ = 0u; k_ < (count); ++k_) pairs[k_] = subgroupBroadcast(rows_[k_ / 8u], k_ & 7u); \
+  }
+
+// Whether lanes go on that have nothing of their own to do.
+bool goes_on(bool has) { return TOGETHER ? any_lane(has) : has; }
+
+// That of the first lane that has one, for those that have none.
+uint stand_in(uint value, bool has) {
+  if (!TOGETHER) return value;
+  uint having = lanes_where(has), first = OF_LANE(value, lowest_bit(having | 1u << (LANES - 1u)));
+  return has || having == 0u ? value : first;
+}
+
+struct SharedLooks {
+  Looks looks;
+  uint material;  // that most lanes want; NO_INDEX: each reads its own
+};
+
+SharedLooks looks_together(uint index) {
+  if (!TOGETHER) return SharedLooks(looks_of(index), NO_INDEX);
+  uint shared_index = subgroupBroadcast(index, 0u);
+  uvec2 i[INSTANCE_PAIRS], m[MATERIAL_PAIRS];
+  LOAD_TOGETHER(i, INSTANCE_PAIRS, frame.instances_at, instance_offset(shared_index));
+  SharedLooks s;
+  s.looks.instance = unpack_instance(i);
+  s.material = s.looks.instance.material;
+  LOAD_TOGETHER(m, MATERIAL_PAIRS, frame.materials_at, material_offset(s.material));
+  s.looks.material = unpack_material(m);
+  if (index != shared_index) s.looks = looks_of(index);
+  return s;
+}
+
+TextureUse use_together(SharedLooks s, uint place) {
+  if (!TOGETHER) return load_use(s.looks.instance.material, place);
+  uvec2 p[USE_PAIRS];
+  LOAD_TOGETHER(p, USE_PAIRS, frame.materials_at, use_offset(s.material, place));
+  TextureUse use = unpack_use(p);
+  if (s.looks.instance.material != s.material) use = load_use(s.looks.instance.material, place);
+  return use;
+}
+#endif
