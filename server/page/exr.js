@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Reads the EXR files that sheaf writes: one part, scanlines; half, float and uint channels.
+// Reads the EXR files that sheaf writes: one part, scanlines; half, float and uint channels; compressed by what browsers
+// can undo (deflate) or hardly at all. PIZ and DWA would need decoders of their own: such frames are downloaded.
 
-const SCANLINES = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 8: 32, 9: 256 };  // of a block, by compression
+const SCANLINES = { 0: 1, 1: 1, 2: 1, 3: 16 };  // of a block, by compression
 const COMPRESSIONS = ["none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"];
+
+const damaged = () => new Error("The EXR file is damaged.");
 
 /** Gives { width, height, channels: { name: Float32Array }, attributes: { name: text } }, rows from the top. */
 async function readExr(buffer) {
@@ -11,7 +14,8 @@ async function readExr(buffer) {
   if (view.getUint32(4, true) & 0x1200) throw new Error("Tiled and deep EXR files are not shown here.");
   const header = readHeader(view);
   if (!(header.compression in SCANLINES)) {
-    throw new Error(`EXR compression ${COMPRESSIONS[header.compression] ?? header.compression} is not shown here; the file can be downloaded.`);
+    const name = COMPRESSIONS[header.compression] ?? header.compression;
+    throw new Error(`The layers of a frame compressed with ${name} are not shown in the browser: download it.`);
   }
   const { width, height } = header;
   const channels = Object.fromEntries(header.channels.map(({ name }) => [name, new Float32Array(width * height)]));
@@ -22,7 +26,7 @@ async function readExr(buffer) {
     const packed = new Uint8Array(buffer, offset + 8, view.getUint32(offset + 4, true));
     const count = Math.min(rows, height - top);
     const size = count * width * header.channels.reduce((sum, { type }) => sum + (type === 1 ? 2 : 4), 0);
-    spread(await unpack(packed, size, header, count), header, channels, top, count);
+    spread(await unpack(packed, size, header.compression), header, channels, top, count);
   }));
   return { width, height, channels, attributes: header.attributes };
 }
@@ -42,7 +46,7 @@ function readHeader(view) {
     const begin = at;
     if (type === "chlist") {
       while (view.getUint8(at)) {
-        header.channels.push({ name: text(), type: view.getUint32(at, true), linear: view.getUint8(at + 4) !== 0 });
+        header.channels.push({ name: text(), type: view.getUint32(at, true) });
         at += 16;
       }
     } else if (name === "compression") header.compression = view.getUint8(at);
@@ -57,11 +61,9 @@ function readHeader(view) {
   return header;
 }
 
-async function unpack(packed, size, header, rows) {
-  if (header.compression === 0 || packed.length === size) return packed;  // what would grow is stored as it is
-  const whole = header.compression === 4 ? unpackPiz(packed, header, rows)
-    : header.compression >= 8 ? await unpackDwa(packed, header, rows)
-    : unweave(header.compression === 1 ? runs(packed, size) : await inflate(packed));
+async function unpack(packed, size, compression) {
+  if (compression === 0 || packed.length === size) return packed;  // what would grow is stored as it is
+  const whole = unweave(compression === 1 ? runs(packed, size) : await inflate(packed));
   if (whole.length !== size) throw damaged();
   return whole;
 }

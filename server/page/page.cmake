@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The page as one file without anything beside it: style and scripts go into index.html. Sets `index_html`.
-set(page_scripts api.js settings.js scene.js exr.js exr_piz.js exr_dwa.js viewer.js charts.js report.js player.js jobs.js)
+set(page_scripts api.js settings.js scene.js exr.js viewer.js charts.js report.js player.js jobs.js)
 foreach(file IN ITEMS index.html page.css LISTS page_scripts)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/${file})
 endforeach()

@@ -12,6 +12,7 @@ const LAYERS = [
 async function openFrame(job, frame) {
   $("viewer-title").textContent = `Frame ${frame.frame}`;
   $("pixel").textContent = "Loading…";
+  $("viewer-save").onclick = () => save(frame.exr, frame.exr.split("/").pop());
   $("viewer").showModal();
   try {
     const exr = await readExr(await (await ask(relative(frame.exr))).arrayBuffer());
@@ -24,7 +25,16 @@ async function openFrame(job, frame) {
     $("pixel").textContent = `${exr.width} × ${exr.height}. Point at a pixel for its value.`;
   } catch (error) {
     $("pixel").textContent = error.message;
+    $("layer").replaceChildren();
+    showPreview(await picture(frame));
   }
+}
+
+/** What can be shown of a frame whose layers cannot. */
+function showPreview(bitmap) {
+  const canvas = $("canvas");
+  Object.assign(canvas, { width: bitmap.width, height: bitmap.height });
+  canvas.getContext("2d").drawImage(bitmap, 0, 0);
 }
 
 function show() {

@@ -24,34 +24,43 @@ READ = """async (bytes) => {
 }"""
 FETCHED = f"async (path) => ({READ})(await (await ask(path)).arrayBuffer())"
 GIVEN = f"async (text) => ({READ})(Uint8Array.from(atob(text), (each) => each.charCodeAt(0)).buffer)"
-# Cosines in single precision here and in double precision there: now and then the nearest half is the next one, of
-# what is then raised to the power 2.2 (or more, where it is brighter than 1).
-NEXT_HALF = 2**-10 * 2.2 * 1.5
 
 
 def numbers(texts: list[str]) -> np.ndarray:
     return np.array([float(text.replace("Infinity", "inf")) for text in texts], np.float32)
 
 
-def check(read: dict[str, list[str]], name: str, wanted: np.ndarray, exactly: bool) -> None:
-    pixels, wanted = numbers(read[name]), wanted.astype(np.float32).ravel()
-    if exactly:
-        np.testing.assert_array_equal(pixels, wanted, err_msg=name)
-    else:
-        np.testing.assert_allclose(pixels, wanted, rtol=NEXT_HALF, atol=1e-4, err_msg=name)
-        assert np.mean(pixels != wanted) < 0.02, name
+def check(read: dict[str, list[str]], name: str, wanted: np.ndarray) -> None:
+    np.testing.assert_array_equal(numbers(read[name]), wanted.astype(np.float32).ravel(), err_msg=name)
 
 
-@pytest.mark.parametrize("compression", ["none", "rle", "zips", "zip", "piz", "dwaa"])
+@pytest.mark.parametrize("compression", ["none", "rle", "zips", "zip"])
 def test_every_compression_is_read_as_it_is(visit: Visit, client: sheaf.Client, compression: str) -> None:
     settings = {"size": "70x75", "strategy": "reference", "aov": "Z,id", "compression": compression}
     job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
     read = visit().evaluate(FETCHED, f"v1/jobs/{job.id}/frames/0.exr")
     layers = job.frame(0).layers
     for index, name in enumerate("RGBA"):
-        check(read, name, layers["RGBA"][..., index], compression != "dwaa" or name == "A")
-    check(read, "Z", layers["Z"], True)
-    check(read, "id.object", layers["id.object"], True)
+        check(read, name, layers["RGBA"][..., index])
+    check(read, "Z", layers["Z"])
+    check(read, "id.object", layers["id.object"])
+
+
+@pytest.mark.parametrize("compression", ["piz", "dwaa"])
+def test_a_frame_of_another_compression_is_previewed_and_downloaded(
+    visit: Visit, client: sheaf.Client, compression: str
+) -> None:
+    settings = {"size": "70x75", "strategy": "reference", "compression": compression}
+    job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
+    page = visit(f"#job={job.id}")
+    page.click("#open")
+    expect(page.locator("#pixel")).to_contain_text(f"compressed with {compression} are not shown in the browser")
+    expect(page.locator("#canvas")).to_have_attribute("width", "70")
+    assert page.locator("#layer option").count() == 0
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download").click()
+    with OpenEXR.File(str(download.value.path()), separate_channels=True) as file:
+        assert sorted(file.channels()) == ["A", "B", "G", "R"]
 
 
 def written(path: pathlib.Path, compression: OpenEXR.Compression, **layers: np.ndarray) -> dict[str, np.ndarray]:
@@ -78,27 +87,26 @@ def picture(width: int, height: int) -> dict[str, np.ndarray]:
     }
 
 
-@pytest.mark.parametrize("name", ["PIZ", "DWAA", "DWAB"])
+@pytest.mark.parametrize("name", ["RLE", "ZIPS", "ZIP"])
 def test_what_openexr_writes_is_read(visit: Visit, tmp_path: pathlib.Path, name: str) -> None:
     page = visit()
-    # Less than a block, and beyond one (32 lines, 256, squares of 8 x 8); noise of the last has more than 2^14 values.
-    for size in ((1, 1), (3, 40), (37, 21), (64, 64), (130, 300)):
+    for size in ((1, 1), (3, 40), (37, 21), (130, 30)):  # less than a block of 16 lines, and beyond one
         path = tmp_path / "picture.exr"
         wanted = written(path, getattr(OpenEXR, f"{name}_COMPRESSION"), **picture(*size))
         read = page.evaluate(GIVEN, base64.b64encode(path.read_bytes()).decode())
         assert sorted(read) == sorted(wanted)
         for channel, pixels in wanted.items():
-            check(read, channel, pixels, name == "PIZ" or channel[-1] not in "RGB")
+            check(read, channel, pixels)
 
 
 def test_what_cannot_be_shown_says_so(visit: Visit, tmp_path: pathlib.Path) -> None:
     path = tmp_path / "picture.exr"
     written(path, OpenEXR.B44_COMPRESSION, **picture(8, 8))
-    with pytest.raises(playwright.Error, match="EXR compression b44 is not shown here"):
+    with pytest.raises(playwright.Error, match="compressed with b44 are not shown in the browser"):
         visit().evaluate(GIVEN, base64.b64encode(path.read_bytes()).decode())
 
 
-@pytest.mark.parametrize("name", ["ZIP", "PIZ", "DWAA"])
+@pytest.mark.parametrize("name", ["RLE", "ZIP"])
 def test_a_damaged_file_is_refused(visit: Visit, tmp_path: pathlib.Path, name: str) -> None:
     path = tmp_path / "picture.exr"
     written(path, getattr(OpenEXR, f"{name}_COMPRESSION"), **picture(64, 64))
