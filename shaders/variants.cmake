@@ -23,8 +23,8 @@ sheaf_kernels(trace/bundles traverse_bundles)
 sheaf_kernels(trace/pairs traverse_pairs intersect_pairs)
 sheaf_kernels(trace/cells walk_begin pairs_open pairs_ranges intersect_packets)
 sheaf_kernels(trace/frustum packets_keys packets_frustums)
-sheaf_kernels(trace/classify classify_bounds classify_keys classify_begin classify_frustums classify_stops classify_candidates
-              classify_cuts)
+sheaf_kernels(trace/classify classify_bounds classify_keys classify_begin classify_frustums classify_stops
+              classify_candidates classify_cuts)
 sheaf_kernels(trace/brute intersect_brute)
 sheaf_kernels(trace/query traverse_query)
 

@@ -82,8 +82,8 @@ CompiledKernels::CompiledKernels(const Device& device, const Features& features,
   for (const char* stem : {"traverse_single", "traverse_bundles", "traverse_packets"}) hash.add(shader_code(stem));
   std::ostringstream constants;
   constants << features.masked << features.translucent() << features.textured << settings.counted
-            << settings.layers.tests << plan.posed << plan.shadows << ' ' << device.limits().subgroup << ' '
-            << device.limits().bundle << ' ' << device.limits().workers;
+            << settings.layers.tests << plan.transform_on_fetch << plan.shadows << ' ' << device.limits().subgroup
+            << ' ' << device.limits().bundle << ' ' << device.limits().workers;
   hash.add(constants.str());
   variant_ = hash.text();
 }

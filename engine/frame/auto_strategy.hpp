@@ -39,7 +39,7 @@ class AutoStrategy {
   [[nodiscard]] Strategy second() const { return terms_.second; }
   [[nodiscard]] StrategyTrial& trial() { return trial_; }
   [[nodiscard]] const StrategyTrial& trial() const { return trial_; }
-  /// What the first strategy's kernels took to be made, CPU time: the second's are foretold from it.
+  /// What the first strategy's kernels took to be made, CPU time: the second's are predicted from it.
   void first_made(double cpu_ms);
   /// Whether to wait for the second's kernels, where else the first goes on: then what happens does not depend on time.
   [[nodiscard]] bool waits() const { return given_price_.has_value(); }

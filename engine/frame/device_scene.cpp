@@ -15,7 +15,7 @@ constexpr std::uint32_t max_lights = 4096;
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, const Plan& plan)
     : scene_(scene),
       hierarchy_(plan.object_hierarchy),
-      posed_(plan.posed),
+      transform_on_fetch_(plan.transform_on_fetch),
       layout_(lay_out(scene, settings, plan.coincidence ? *plan.coincidence : Coincidence{})) {
   Recorder recorder(device);
   indices_ = upload(device, recorder, "indices", layout_.indices, by_address);
@@ -30,8 +30,8 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, const RenderS
   joints_ = upload(device, recorder, "joints", layout_.joints);
   morphs_ = upload(device, recorder, "morph targets", layout_.morphs);
   using Kind = Buffer::Kind;
-  triangles_ =
-      Buffer(device, "triangles", layout_.triangles * (posed_ ? 1 : gpu::TRIANGLE_WORDS) * 4, Kind::device, by_address);
+  triangles_ = Buffer(device, "triangles", layout_.triangles * (transform_on_fetch_ ? 1 : gpu::TRIANGLE_WORDS) * 4,
+                      Kind::device, by_address);
   instances_ = Buffer(device, "instances", layout_.instances.size() * sizeof(gpu::Instance), Kind::upload, by_address);
   dynamic_ = Buffer(device, "deformed vertices", std::uint64_t{layout_.dynamic_vertices} * 3 * sizeof(glm::vec3),
                     Kind::device, by_address);

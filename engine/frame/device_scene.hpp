@@ -23,7 +23,7 @@ struct Motion {  // what a frame's animate and objects stages have to do; all ze
 
 class DeviceScene {
  public:
-  /// Of the plan: object_hierarchy and posed. The scene must outlive it.
+  /// Of the plan: object_hierarchy and transform_on_fetch. The scene must outlive it.
   DeviceScene(const Device& device, const Scene& scene, const RenderSettings& settings, const Plan& plan);
 
   /// Moves everything to a pose. `origin` is the frame origin; triangles are relative to it.
@@ -39,7 +39,7 @@ class DeviceScene {
   [[nodiscard]] const Buffer& vertex_work() const { return vertex_work_; }
   [[nodiscard]] const Buffer& refit_work() const { return refit_work_; }
   [[nodiscard]] const Buffer& triangle_words() const { return triangles_; }
-  [[nodiscard]] bool posed() const { return posed_; }  // then they have no corners
+  [[nodiscard]] bool transforms_on_fetch() const { return transform_on_fetch_; }  // then they have no corners
   /// What shaders read by address (memory.glsl), set in the frame's block.
   void set_addresses(gpu::Frame& frame) const;
   [[nodiscard]] std::uint32_t hierarchy_levels() const { return hierarchy_levels_; }
@@ -56,7 +56,7 @@ class DeviceScene {
   Motion list_work(const std::vector<bool>& moved, Recorder& recorder);
 
   const Scene& scene_;
-  const bool hierarchy_, posed_;
+  const bool hierarchy_, transform_on_fetch_;
   SceneLayout layout_;
   Buffer indices_, positions_, normals_, tangents_, uvs_, colors_, materials_, texels_;
   Buffer triangles_, instances_, lights_, nodes_, dynamic_;

@@ -134,9 +134,9 @@ Features find_features(const Scene& scene, const std::vector<std::uint32_t>& ani
 
 namespace {
 
-// A triangle in world space is 40 bytes. To read a posed one gathers 27 words instead of 10: a quarter more of a
-// frame's time in a city of ten million copies.
-bool poses_triangles(const Features& features, const RenderSettings& settings) {
+// A triangle in world space is 40 bytes. To transform one when it is read gathers 27 words instead of 10: a quarter
+// more of a frame's time in a city of ten million copies.
+bool transforms_on_fetch(const Features& features, const RenderSettings& settings) {
   constexpr std::uint64_t worth_sharing = std::uint64_t{1} << 23U;
   if (settings.instances != InstancePolicy::automatic) return settings.instances == InstancePolicy::shared;
   return features.triangles - features.distinct_triangles >= worth_sharing &&
@@ -177,8 +177,9 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
                     : settings.primary == PrimaryMethod::trace ? "--primary trace"
                                                                : "more than eight triangles a pixel: rays are cheaper");
   if (!features.textured) leave("texture filter", "no textures");
-  plan.posed = poses_triangles(features, settings);
-  if (plan.posed) leave("triangles in world space", "most are instances, posed when read; see --instances");
+  plan.transform_on_fetch = transforms_on_fetch(features, settings);
+  if (plan.transform_on_fetch)
+    leave("triangles in world space", "most are instances, transformed when read; see --instances");
   plan.deform = features.skinned || features.morphed;
   if (!plan.deform) leave("deform", "nothing is skinned or morphed over time");
   if (!features.geometry_moves()) leave("animate", "nothing moves after the first frame");

@@ -20,7 +20,7 @@ ListDump::ListDump(const Device& device, const DeviceScene& scene, const RayMemo
   triangles_ = Buffer(device, "dump", std::min<std::uint64_t>(scene.triangles(), piece) * 9 * sizeof(float),
                       Kind::readback, by_address);
   rays_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * gpu::RAY_SLOT_BYTES, Kind::readback, by_address);
-  const std::array constants{SpecConstant{SPEC_POSED, scene.posed()}};
+  const std::array constants{SpecConstant{SPEC_TRANSFORM_ON_FETCH, scene.transforms_on_fetch()}};
   corners_ = Kernel(device, "dump_triangles", constants);
   hits_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 8, Kind::readback);
   order_ = Buffer(device, "dump", std::uint64_t{memory.capacity} * 4, Kind::readback);

@@ -47,7 +47,7 @@ void Renderer::collect_generations(RenderedFrame& out) {
       const std::uint32_t size = device_.limits().bundle;
       const std::uint32_t bundles = (counters[gpu::COUNT_RAYS + kind] + size - 1) / size;
       found->nodes += bundles;
-      found->tight += bundles - counters[gpu::COUNT_LOOSE];
+      found->tight += bundles - counters[gpu::COUNT_INCOHERENT];
     } else if (plan.packets) {
       found->nodes += counters[gpu::COUNT_CELLS];
     }

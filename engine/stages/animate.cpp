@@ -6,7 +6,7 @@
 namespace sheaf {
 
 Animate::Animate(const Device& device, const Plan& plan, const SceneLayout& layout) {
-  const std::array constants{SpecConstant{SPEC_POSED, plan.posed},
+  const std::array constants{SpecConstant{SPEC_TRANSFORM_ON_FETCH, plan.transform_on_fetch},
                              SpecConstant{SPEC_MIRRORED_SKINS, layout.mirrored_skins}};
   triangles_ = Kernel(device, "animate_triangles", constants);
   if (layout.deforms.empty()) return;

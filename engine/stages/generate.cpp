@@ -20,7 +20,7 @@ Generate::Generate(const Device& device, const Plan& plan, const Features& featu
       SpecConstant{SPEC_VOLUMES, features.volumes},
       SpecConstant{SPEC_COUNTED, settings.counted},
       SpecConstant{SPEC_TEXTURED, features.textured},
-      SpecConstant{SPEC_POSED, plan.posed},
+      SpecConstant{SPEC_TRANSFORM_ON_FETCH, plan.transform_on_fetch},
       SpecConstant{SPEC_RASTER, plan.raster},
       SpecConstant{SPEC_LANES, device.limits().subgroup},
       SpecConstant{SPEC_TRANSLUCENT, features.transmissive},

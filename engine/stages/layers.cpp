@@ -8,7 +8,8 @@ namespace sheaf {
 
 Layers::Layers(const Device& device, const Plan& plan, const Features& features) {
   const std::array constants{SpecConstant{SPEC_TEXTURED_NORMALS, plan.textured_normals},
-                             SpecConstant{SPEC_TEXTURED, features.textured}, SpecConstant{SPEC_POSED, plan.posed},
+                             SpecConstant{SPEC_TEXTURED, features.textured},
+                             SpecConstant{SPEC_TRANSFORM_ON_FETCH, plan.transform_on_fetch},
                              SpecConstant{SPEC_LANES, device.limits().subgroup}};
   layers_ = Kernel(device, "layers", constants);
 }

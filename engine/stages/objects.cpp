@@ -6,7 +6,7 @@
 namespace sheaf {
 
 Objects::Objects(const Device& device, const Plan& plan) {
-  const std::array constants{SpecConstant{SPEC_POSED, plan.posed}};
+  const std::array constants{SpecConstant{SPEC_TRANSFORM_ON_FETCH, plan.transform_on_fetch}};
   if (plan.object_hierarchy) refit_ = Kernel(device, "objects_refit", constants);
 }
 

@@ -35,10 +35,11 @@ void Raster::make_pipeline(const Plan& plan, const Features& features) {
   pass_ = vk::raii::RenderPass(device.logical(), vk::RenderPassCreateInfo({}, {}, subpass));
 
   const auto vertex = make_shader_module(device, "raster_vert"), fragment = make_shader_module(device, "raster_frag");
-  const std::array entries{vk::SpecializationMapEntry(SPEC_MASKED, 0, 4), vk::SpecializationMapEntry(SPEC_POSED, 4, 4),
-                           vk::SpecializationMapEntry(SPEC_ONE_SIDED, 8, 4),
-                           vk::SpecializationMapEntry(SPEC_RANKED, 12, 4)};
-  const std::array<vk::Bool32, 4> values{features.masked, plan.posed, features.one_sided, features.coincident};
+  const std::array entries{
+      vk::SpecializationMapEntry(SPEC_MASKED, 0, 4), vk::SpecializationMapEntry(SPEC_TRANSFORM_ON_FETCH, 4, 4),
+      vk::SpecializationMapEntry(SPEC_ONE_SIDED, 8, 4), vk::SpecializationMapEntry(SPEC_RANKED, 12, 4)};
+  const std::array<vk::Bool32, 4> values{features.masked, plan.transform_on_fetch, features.one_sided,
+                                         features.coincident};
   const vk::SpecializationInfo special(entries.size(), entries.data(), sizeof(values), values.data());
   const std::array stages{
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main", &special),

@@ -8,10 +8,12 @@
 namespace sheaf {
 
 RasterSpans::RasterSpans(const Device& device, const Plan& plan, const Features& features) {
-  const std::array constants{
-      SpecConstant{SPEC_MASKED, features.masked},         SpecConstant{SPEC_TEXTURED, features.textured},
-      SpecConstant{SPEC_LANES, device.limits().subgroup}, SpecConstant{SPEC_POSED, plan.posed},
-      SpecConstant{SPEC_ONE_SIDED, features.one_sided},   SpecConstant{SPEC_RANKED, features.coincident}};
+  const std::array constants{SpecConstant{SPEC_MASKED, features.masked},
+                             SpecConstant{SPEC_TEXTURED, features.textured},
+                             SpecConstant{SPEC_LANES, device.limits().subgroup},
+                             SpecConstant{SPEC_TRANSFORM_ON_FETCH, plan.transform_on_fetch},
+                             SpecConstant{SPEC_ONE_SIDED, features.one_sided},
+                             SpecConstant{SPEC_RANKED, features.coincident}};
   kernel_ = Kernel(device, "raster_spans", constants);
 }
 

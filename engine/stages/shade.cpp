@@ -20,7 +20,7 @@ void Shade::record(Recorder& recorder, const RayMemory& memory, const ShadowPare
     std::uint32_t kind, sums;
   } push{parents.primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, gpu::SUMS_SHARED};
   if (!by_parent_) {
-    if (parents.together_one_a_pixel) push.sums = gpu::SUMS_OWN;
+    if (parents.both_one_per_pixel) push.sums = gpu::SUMS_OWN;
     recorder.dispatch_indirect(shade_, push, gpu::ARGS_RAYS);
     return;
   }

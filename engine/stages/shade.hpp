@@ -9,9 +9,9 @@ namespace sheaf {
 
 /// Whose shadow rays the list holds.
 struct ShadowParents {
-  bool primary;               // the camera's rays, else reflections and refractions
-  bool one_a_pixel;           // of each kind
-  bool together_one_a_pixel;  // of both
+  bool primary;             // the camera's rays, else reflections and refractions
+  bool one_a_pixel;         // of each kind
+  bool both_one_per_pixel;  // of both
 };
 
 class Shade {

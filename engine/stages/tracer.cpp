@@ -24,7 +24,7 @@ std::vector<SpecConstant> candidate_constants(const TraceContext& c, bool any_hi
           {SPEC_COUNTED, c.counted},
           {SPEC_PIXEL_COUNTED, c.settings.layers.tests},
           {SPEC_TEXTURED, c.features.textured},
-          {SPEC_POSED, c.plan.posed}};
+          {SPEC_TRANSFORM_ON_FETCH, c.plan.transform_on_fetch}};
 }
 
 std::vector<SpecConstant> lane_constants(const Device& device, std::uint32_t rays) {

@@ -17,7 +17,7 @@ constexpr std::uint32_t most_effort = 250;
 
 TraverseBundles::TraverseBundles(const TraceContext& c)
     : context_(c),
-      loose_bundles_(c.device, "loose bundles", (std::uint64_t{c.memory.capacity} / gpu::BUNDLE + 1) * 4),
+      incoherent_bundles_(c.device, "incoherent bundles", (std::uint64_t{c.memory.capacity} / gpu::BUNDLE + 1) * 4),
       single_(c, true) {
   if (c.plan.sorts) sort_ = SortRays(c);
   const auto lanes = lane_constants(c.device, c.device.limits().bundle);
@@ -35,14 +35,14 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
   if (context_.plan.sorts && kind != gpu::KIND_PRIMARY) sort_.record(recorder, context_, kind);
 
   recorder.stage("traverse");
-  recorder.bind(ROLE_WORK, loose_bundles_);
+  recorder.bind(ROLE_WORK, incoherent_bundles_);
   const bool shadow = kind == gpu::KIND_SHADOW;
   const struct {
     std::uint32_t kind, most_effort;
     float widest;
   } walk{kind, most_effort, shadow ? widest_shadow : widest};
   recorder.dispatch_indirect(shadow ? any_ : nearest_, walk, gpu::ARGS_BUNDLES);
-  recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_LOOSE);
+  recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_INCOHERENT);
 }
 
 }  // namespace sheaf

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Strategy `hybrid`: rays sorted where it pays; bundles bounded and, if tight, walked through the object hierarchy by a
-// subgroup each, the rays of loose ones one a lane.
+// subgroup each, the rays of incoherent ones one per lane.
 #pragma once
 
 #include "stages/sort.hpp"
@@ -19,7 +19,7 @@ class TraverseBundles final : public Tracer {
 
  private:
   TraceContext context_;
-  Buffer loose_bundles_;
+  Buffer incoherent_bundles_;
   SortRays sort_;
   Kernel nearest_, any_;
   SingleKernels single_;

@@ -25,8 +25,8 @@ std::uint32_t level_of_opening(std::uint32_t rays, std::uint64_t triangles) {
 }  // namespace
 
 TraversePairs::TraversePairs(const TraceContext& c) : context_(c), hierarchy_(c.device), compact_(c.device, "pairs") {
-  const std::array posed{SpecConstant{SPEC_POSED, c.plan.posed}};
-  spheres_ = Kernel(c.device, "objects_spheres", posed);
+  const std::array constants{SpecConstant{SPEC_TRANSFORM_ON_FETCH, c.plan.transform_on_fetch}};
+  spheres_ = Kernel(c.device, "objects_spheres", constants);
   if (c.plan.sorts) sort_ = SortRays(c);
   const std::array counting{SpecConstant{SPEC_COUNTED, c.counted},
                             SpecConstant{SPEC_PIXEL_COUNTED, c.settings.layers.tests}};

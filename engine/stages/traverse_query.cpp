@@ -18,8 +18,8 @@ TraverseQuery::TraverseQuery(const TraceContext& c) : context_(c) {
   if (!c.device.limits().ray_query)
     throw Error(ErrorKind::device,
                 c.device.summary().name + ": --strategy rayquery: the device has no VK_KHR_ray_query");
-  const std::array posed{SpecConstant{SPEC_POSED, c.plan.posed}};
-  boxes_kernel_ = Kernel(c.device, "objects_boxes", posed);
+  const std::array constants{SpecConstant{SPEC_TRANSFORM_ON_FETCH, c.plan.transform_on_fetch}};
+  boxes_kernel_ = Kernel(c.device, "objects_boxes", constants);
   auto make = [&](bool any_hit) { return Kernel(c.device, "traverse_query", candidate_constants(c, any_hit)); };
   nearest_ = make(false);
   if (c.plan.shadows) any_ = make(true);

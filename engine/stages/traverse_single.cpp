@@ -5,12 +5,12 @@
 
 namespace sheaf {
 
-SingleKernels::SingleKernels(const TraceContext& c, bool loose) {
+SingleKernels::SingleKernels(const TraceContext& c, bool incoherent) {
   auto make = [&](bool any_hit) {
     auto constants = candidate_constants(c, any_hit);
-    constants.push_back({SPEC_LOOSE, loose});
-    if (loose) constants.push_back({SPEC_GROUP, c.device.limits().bundle});
-    const bool packets = loose && c.device.limits().cpu;
+    constants.push_back({SPEC_INCOHERENT, incoherent});
+    if (incoherent) constants.push_back({SPEC_GROUP, c.device.limits().bundle});
+    const bool packets = incoherent && c.device.limits().cpu;
     if (packets) constants.push_back({SPEC_LANES, c.device.limits().subgroup});
     return Kernel(c.device, packets ? "traverse_packets" : "traverse_single", constants);
   };

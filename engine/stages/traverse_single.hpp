@@ -7,11 +7,11 @@
 
 namespace sheaf {
 
-/// Kernel variants of the single-ray walk, nearest and any hit. `loose`: those that `hybrid` uses for the rays of its
-/// loose bundles, on a CPU device as packets of a subgroup (packet.glsl).
+/// Kernel variants of the single-ray walk, nearest and any hit. `incoherent`: those that `hybrid` uses for the rays of
+/// its incoherent bundles, on a CPU device as packets of a subgroup (packet.glsl).
 struct SingleKernels {
   SingleKernels() = default;
-  SingleKernels(const TraceContext& context, bool loose);
+  SingleKernels(const TraceContext& context, bool incoherent);
   [[nodiscard]] bool made() const { return nearest.made() && any.made(); }
   [[nodiscard]] double making_ms() const { return nearest.making_ms() + any.making_ms(); }
   Kernel nearest, any;

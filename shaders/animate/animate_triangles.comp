@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// World-space triangles of the instances that moved, relative to the frame origin. A workgroup takes one block of up to GROUP
-// triangles of one instance.
+// World-space triangles of the instances that moved, relative to the frame origin. A workgroup takes one block of up to
+// GROUP triangles of one instance.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -45,9 +45,9 @@ void main() {
               ((flags & (MATERIAL_BLEND | MATERIAL_TRANSMISSIVE)) != 0u ? TRIANGLE_TRANSLUCENT : 0u) |
               ((flags & MATERIAL_ONE_SIDED) != 0u ? TRIANGLE_ONE_SIDED : 0u) |
               (i.determinant_sign < 0.0 || mirrored(i, t) ? TRIANGLE_MIRRORED : 0u) | (i.marks & ~INSTANCE_DEFORM);
-  if (POSED) {
+  if (TRANSFORM_ON_FETCH) {
     TriangleWords(frame.triangles_at).word[t] = word;
     return;
   }
-  Triangles(frame.triangles_at).triangle[t] = pose_triangle(i, t, word);
+  Triangles(frame.triangles_at).triangle[t] = transform_triangle(i, t, word);
 }

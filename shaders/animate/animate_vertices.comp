@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Vertices of skinned and morphed instances, in world space relative to the frame origin: position, normal, tangent; and their
-// texture coordinates and colors, where these are morphed.
-// glTF 2.0, 3.7.2.2 (morph targets) and 3.7.3 (skins). A workgroup takes one block of up to GROUP vertices of one instance.
+// Vertices of skinned and morphed instances, in world space relative to the frame origin: position, normal, tangent;
+// and their texture coordinates and colors, where these are morphed. glTF 2.0, 3.7.2.2 (morph targets) and 3.7.3
+// (skins). A workgroup takes one block of up to GROUP vertices of one instance.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -11,7 +11,8 @@
 #include "lib/unit.glsl"
 #include "animate/skin.glsl"
 layout(constant_id = SPEC_FACE_TANGENTS) const bool FACE_TANGENTS = false;  // some mesh has them
-layout(constant_id = SPEC_MORPHED_ATTRIBUTES) const bool MORPHED_ATTRIBUTES = false;  // so have texture coordinates or colors
+// So have texture coordinates or colors.
+layout(constant_id = SPEC_MORPHED_ATTRIBUTES) const bool MORPHED_ATTRIBUTES = false;
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer NewUv { vec2 v; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer NewColor { vec4 v; };
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
@@ -24,7 +25,8 @@ layout(push_constant) uniform Push { uint blocks; } push;
 
 vec3 morphed(vec3 base, Deform d, uint first, uint v) {
   if (first == NO_INDEX) return base;
-  for (uint k = 0u; k < d.morph_targets; ++k) base += morph_weights[d.weight_first + k] * morphs[first + k * d.vertex_count + v];
+  for (uint k = 0u; k < d.morph_targets; ++k)
+    base += morph_weights[d.weight_first + k] * morphs[first + k * d.vertex_count + v];
   return base;
 }
 

@@ -3,7 +3,8 @@
 #ifndef SHEAF_BINDINGS_H
 #define SHEAF_BINDINGS_H
 
-// Specialization constants: the size of a workgroup, what a scene has, what is asked of a kernel, and the device's subgroups.
+// Specialization constants: the size of a workgroup, what a scene has, what is asked of a kernel, and the device's
+// subgroups.
 #define SPEC_GROUP 0
 #define SPEC_ANY_HIT 1
 #define SPEC_MASKED 2
@@ -12,11 +13,11 @@
 #define SPEC_VOLUMES 5
 #define SPEC_COUNTED 6
 #define SPEC_PIXEL_COUNTED 7
-#define SPEC_LOOSE 8
+#define SPEC_INCOHERENT 8
 #define SPEC_TEXTURED 9
 #define SPEC_LANES 10
 #define SPEC_VECTORS 11
-#define SPEC_POSED 12
+#define SPEC_TRANSFORM_ON_FETCH 12
 #define SPEC_RASTER 13
 #define SPEC_ADAPTIVE 14
 #define SPEC_SHADOWS 15
@@ -79,8 +80,8 @@
 #define ROLE_CELL_CUTS 65
 #define ROLE_COUNT 66
 
-// Parts of lists are known by address. Bound like the rest, they lie in the push constants from this byte on, in this order: those
-// of the list at work, and the rays that generate writes.
+// Parts of lists are known by address. Bound like the rest, they lie in the push constants from this byte on, in this
+// order: those of the list at work, and the rays that generate writes.
 #define LIST_ORDER 0
 #define LIST_HITS 1
 #define LIST_RAYS 2

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How a dispatch's work is dealt to the threads of a CPU device. llvmpipe gives each of its threads as many workgroups, one behind the
-// other: were a group's number its place in the list, the first of two threads had the upper half of the picture, and waited for
-// whoever has the lower one. Read by GLSL and C++, as shared.h.
+// How a dispatch's work is distributed over the threads of a CPU device. llvmpipe gives each of its threads the same
+// number of consecutive workgroups. If a group's number were its place in the list, the first of two threads would have
+// the upper half of the picture and would wait for the one that has the lower half. Read by GLSL and C++.
 #ifndef SHEAF_REMAP_WORKGROUP_H
 #define SHEAF_REMAP_WORKGROUP_H
 #ifdef __cplusplus
@@ -17,11 +17,13 @@ inline uint to_uint(float v) { return static_cast<uint>(v); }
 #define SHEAF_FUNCTION
 #endif
 
-// Which of `groups` pieces of work the group does: a permutation that deals them to `workers` threads by turns. A turn is 1 << longest
-// pieces, or fewer where that makes less than eight turns: short ones are dealt more evenly, long ones share fewer cache lines.
-SHEAF_FUNCTION uint dealt(uint group, uint groups, uint workers, uint longest) {
+// Which of `groups` pieces of work the group does: a permutation that gives them to `workers` threads by turns. A turn
+// is 1 << longest pieces, or fewer where that makes less than eight turns: short turns are more even, long ones share
+// fewer cache lines.
+SHEAF_FUNCTION uint remap_workgroup(uint group, uint groups, uint workers, uint longest) {
   uint each = groups / workers;
-  // The quotient below is half a group or more off a whole number, and two roundings off the true one: less, up to 2^21 groups.
+  // The quotient below is half a group or more off a whole number, and two roundings off the true one: less, up to 2^21
+  // groups.
   if (group >= each * workers || groups > (1u << 21)) return group;
   uint worker = to_uint(floor((float(int(group)) + 0.5f) / float(int(each))));
   uint order = 0u;

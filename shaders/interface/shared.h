@@ -30,7 +30,8 @@ SHEAF_CONST KIND_SHADOW = 1u;
 SHEAF_CONST KIND_REFLECTION = 2u;
 SHEAF_CONST KIND_REFRACTION = 3u;
 
-// A ray's words, in pairs (rays.glsl). A list has the first RAY_PART of all its rays, then the others: tracers read no more than the first.
+// A ray's words, in pairs (rays.glsl). A list has the first RAY_PART of all its rays, then the others: tracers read no
+// more than the first.
 SHEAF_CONST RAY_ORIGIN = 0u;     // 3 words
 SHEAF_CONST RAY_DIRECTION = 3u;  // 3 words, unit length
 SHEAF_CONST RAY_TMIN = 6u;
@@ -39,7 +40,8 @@ SHEAF_CONST RAY_WEIGHT = 8u;     // 3 words; a shadow ray: the light it carries 
 SHEAF_CONST RAY_COVERAGE = 11u;
 SHEAF_CONST RAY_MEDIUM = 12u;    // stack of four volume numbers, top in the low byte; a shadow ray: its light
 SHEAF_CONST RAY_PAST = 13u;      // bounces, and from bit 16 on the blended surfaces it went straight through
-SHEAF_CONST RAY_CONE = 14u;      // width and spread of the ray's cone, where textures are filtered (SHADING.md, Texture filter)
+// Width and spread of the ray's cone, where textures are filtered (SHADING.md, Texture filter).
+SHEAF_CONST RAY_CONE = 14u;
 SHEAF_CONST RAY_WORDS = 16u;
 SHEAF_CONST RAY_PART = 8u;
 // And behind the list's rays a word each: the ray's pixel in the tile; NO_INDEX: the slot holds no ray.
@@ -52,7 +54,7 @@ SHEAF_CONST COUNT_RAYS = 5u;          // rays of the list at work: 5 + kind
 SHEAF_CONST COUNT_CHUNKS = 9u;
 SHEAF_CONST COUNT_OVERFLOW = 10u;     // not 0: the band needs more slots than there are
 SHEAF_CONST COUNT_PAIRS = 11u;        // pairs that survived a level
-SHEAF_CONST COUNT_LOOSE = 13u;        // bundles whose rays go one a lane: too wide, or given up
+SHEAF_CONST COUNT_INCOHERENT = 13u;        // bundles whose rays go one a lane: too wide, or given up
 SHEAF_CONST COUNT_SURVIVORS = 15u;    // of a batch of pairs
 SHEAF_CONST COUNT_BOUNDS = 16u;       // 6 words: ordered-integer bounds of the batch's origins
 SHEAF_CONST COUNT_CELLS = 22u;        // packets or cells of the list
@@ -69,8 +71,8 @@ SHEAF_CONST COUNT_WORDS = 32u;
 // Blended surfaces that a ray may go through on its way from the camera; what is further is not seen.
 SHEAF_CONST MOST_BLENDED = 64u;
 
-// What a dispatch's rays are to the sums of their pixels: several may be for one pixel, no two are, or every pixel has one and the sums do
-// not matter yet.
+// What a dispatch's rays are to the sums of their pixels: several may be for one pixel, no two are, or every pixel has
+// one and the sums do not matter yet.
 SHEAF_CONST SUMS_SHARED = 0u, SUMS_OWN = 1u, SUMS_UNSET = 2u;
 
 // Statistics, 64-bit sums, a block of STAT_FIELDS a kind.
@@ -92,7 +94,7 @@ SHEAF_CONST ARGS_CHUNKS = 3u;     // one workgroup a sort block of the chunks
 SHEAF_CONST ARGS_PARENTS = 4u;    // one invocation a parent
 SHEAF_CONST ARGS_SLOTS = 5u;      // one workgroup a scan block of the slots
 SHEAF_CONST ARGS_PAIR_SCATTER = 6u;  // like ARGS_PAIR_BLOCKS, or nothing where the next level has no room
-SHEAF_CONST ARGS_LOOSE = 7u;      // one invocation a loose ray
+SHEAF_CONST ARGS_INCOHERENT = 7u;      // one invocation per ray of an incoherent bundle
 SHEAF_CONST ARGS_ONE = 8u;        // a single workgroup, or nothing when the list is empty
 SHEAF_CONST ARGS_PARENTS_REFRACTION = 9u;
 SHEAF_CONST ARGS_SLOTS_SHADOW = 10u;
@@ -116,7 +118,8 @@ SHEAF_CONST BUNDLE = 64u;         // rays of a packet, or of a bundle at least: 
 SHEAF_CONST ARITY = 4u;
 SHEAF_CONST PART_TRIANGLES = 4u;  // of an instance, that one sphere stands for
 SHEAF_CONST MAX_LEVELS = 16u;
-SHEAF_CONST OPTICAL_STEP = 4096u;  // steps of the fixed-point optical depth in one stop (factor 2): 2^-13 stops of rounding a crossing
+// Steps of the fixed-point optical depth in one stop (factor 2): 2^-13 stops of rounding a crossing.
+SHEAF_CONST OPTICAL_STEP = 4096u;
 
 // Surface layers of a pixel.
 SHEAF_CONST LAYER_DEPTH = 0u;
@@ -128,15 +131,15 @@ SHEAF_CONST LAYER_OBJECT = 12u;
 SHEAF_CONST LAYER_MATERIAL = 13u;
 SHEAF_CONST LAYER_WORDS = 14u;
 
-// Triangles in world space, relative to the frame origin: corners a, b, c, then the word of instance and flags (below). Of posed
-// ones (Plan::posed) only that word.
+// Triangles in world space, relative to the frame origin: corners a, b, c, then the word of instance and flags (below).
+// Only that word where triangles are transformed when they are read (Plan::transform_on_fetch).
 SHEAF_CONST TRIANGLE_WORDS = 10u;
 SHEAF_CONST TRIANGLE_INSTANCE = 9u;
 
-// Object hierarchy: 8-wide nodes of 24 words. Children's boxes are bytes on a grid of the node's own (Ylitie, Karras, Laine,
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017), rounded outwards:
-// origin.xyz, (exponents of the grid's steps x, y, z and the children there are, a byte each),
-// lo.x[8] lo.y[8] lo.z[8] hi.x[8] hi.y[8] hi.z[8] as bytes, child[8].
+// Object hierarchy: 8-wide nodes of 24 words. Children's boxes are bytes on a grid of the node's own (Ylitie, Karras,
+// Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017), rounded outwards:
+// origin.xyz, (exponents of the grid's steps x, y, z and the children there are, a byte each), lo.x[8] lo.y[8] lo.z[8]
+// hi.x[8] hi.y[8] hi.z[8] as bytes, child[8].
 SHEAF_CONST WIDE = 8u;
 SHEAF_CONST LEAF_TRIANGLES = 4u;     // the most of a leaf
 SHEAF_CONST NODE_WORDS = 24u;
@@ -145,18 +148,19 @@ SHEAF_CONST NODE_BOXES = 4u;
 SHEAF_CONST NODE_CHILD = 16u;
 SHEAF_CONST CHILD_EMPTY = 0xFFFFFFFFu;
 SHEAF_CONST CHILD_LEAF = 0x80000000u;  // bits 27..30 count − 1, bits 0..26 first triangle
-SHEAF_CONST STACK_SIZE = 32u;         // one entry a level: the node's children still to visit; two trees of MAX_LEVELS each
+// One entry a level: the node's children still to visit; two trees of MAX_LEVELS each.
+SHEAF_CONST STACK_SIZE = 32u;
 SHEAF_CONST MAX_NODES = 1u << 24;     // a stack entry holds a node and a mask of eight children
 
-// Nodes of the ray hierarchy: sphere of the origins (centre, radius), cone of the directions (axis, half-angle): the 8 floats
-// of R 4.3; and the largest far limit, so that shadow rays end at their light.
+// Nodes of the ray hierarchy: sphere of the origins (centre, radius), cone of the directions (axis, half-angle): the 8
+// floats of R 4.3; and the largest far limit, so that shadow rays end at their light.
 SHEAF_CONST RAY_NODE_WORDS = 9u;
 
-// Frustums of packets and cells (frustum_memory.glsl), and what their pairs with nodes entered: a bit a child in visiting order,
-// and the octant of that order; or that the pair has a leaf, and is kept.
+// Frustums of packets and cells (frustum_memory.glsl), and what their pairs with nodes entered: a bit a child in
+// visiting order, and the octant of that order; or that the pair has a leaf, and is kept.
 SHEAF_CONST FRUSTUM_WORDS = 12u;
-// Classes of rays: face, then so many halvings, are the key. A cell with no more candidates than CLASS_FEW, all leaves, stays whole;
-// one that is crowded is divided where cuts are marked CUT_SMALL as well.
+// Classes of rays: face, then so many halvings, are the key. A cell with no more candidates than CLASS_FEW, all leaves,
+// stays whole; one that is crowded is divided where cuts are marked CUT_SMALL as well.
 SHEAF_CONST CLASS_HALVINGS = 25u;
 SHEAF_CONST CLASS_FEW = 4u;
 SHEAF_CONST CUT_SMALL = 256u;
@@ -173,9 +177,10 @@ SHEAF_CONST MATERIAL_UNLIT = 4u;
 SHEAF_CONST MATERIAL_VOLUME = 8u;
 SHEAF_CONST MATERIAL_TRANSMISSIVE = 16u;
 SHEAF_CONST MATERIAL_ONE_SIDED = 32u;  // its back is passed through by all but shadow rays
-// A triangle's last word: the instance (there are fewer than MAX_NODES, since each has a node), and what a hit must know at once: whether
-// it needs a second look (alpha mask, lets light pass), whether the back counts, whether the node or skin mirrors, and its rank among what lies in
-// the same place (ranks.glsl): three bits, and whether it turns with the side.
+// A triangle's last word: the instance (there are fewer than MAX_NODES, since each has a node), and what a hit must
+// know at once: whether it needs a second look (alpha mask, lets light pass), whether the back counts, whether the node
+// or skin mirrors, and its rank among what lies in the same place (ranks.glsl): three bits, and whether it turns with
+// the side.
 SHEAF_CONST TRIANGLE_MASKED = 0x80000000u;
 SHEAF_CONST TRIANGLE_TRANSLUCENT = 0x40000000u;
 SHEAF_CONST TRIANGLE_ONE_SIDED = 0x20000000u;
@@ -260,7 +265,8 @@ struct Instance {
   uint dynamic;     // first vertex in the dynamic buffer, NO_INDEX where the instance is rigid
   uint material;
   uint object;      // node + 1
-  uint marks;       // INSTANCE_DEFORM, and TRIANGLE_RANK and TRIANGLE_TURNS as in its triangles' words; read by animate_triangles only
+  // INSTANCE_DEFORM, and TRIANGLE_RANK and TRIANGLE_TURNS as in its triangles' words; read by animate_triangles only.
+  uint marks;
 };                  // (structures read by address are whole pairs of words, see memory.glsl)
 
 struct Light {
@@ -277,7 +283,8 @@ struct Light {
 struct Frame {      // per frame and batch of samples
   vec3 eye;         // relative to the frame origin
   float near;
-  vec3 right;       // camera axes, scaled by half the image plane's extent at distance 1 (perspective) or by its half extents
+  // Camera axes, scaled by half the image plane's extent at distance 1 (perspective) or by its half extents.
+  vec3 right;
   float far;
   vec3 up;
   uint orthographic;
@@ -340,7 +347,8 @@ struct Deform {     // one deforming instance's vertices
   uint color_to;
   uint color_morphs;     // r, g, b
   uint alpha_morphs;     // (a, 0, 0)
-  uint face_tangents;    // of flat faces with tangents: vec3 offset of (a, b, 0) a triangle, see Mesh::face_tangents; else NO_INDEX
+  // Of flat faces with tangents: vec3 offset of (a, b, 0) a triangle, see Mesh::face_tangents; else NO_INDEX.
+  uint face_tangents;
 };
 
 #ifdef __cplusplus

@@ -30,8 +30,8 @@ void set_list_args(uint rays) {
   set_args(ARGS_RAYS, groups_of(rays, GROUP));
   set_args(ARGS_BLOCKS, groups_of(rays, SCAN_BLOCK));
   set_args(ARGS_BUNDLES, groups_of(rays, BUNDLE_RAYS));
-  set_args(ARGS_LOOSE, 0u);
-  counters[COUNT_LOOSE] = 0u;
+  set_args(ARGS_INCOHERENT, 0u);
+  counters[COUNT_INCOHERENT] = 0u;
   set_args(ARGS_ONE, min(rays, 1u));
 }
 #endif

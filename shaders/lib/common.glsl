@@ -16,7 +16,8 @@
 #ifdef COMPUTE
 #include "interface/remap_workgroup.h"
 layout(local_size_x = 64, local_size_x_id = SPEC_GROUP) in;
-layout(constant_id = SPEC_WORKERS) const uint WORKERS = 0;  // threads of a CPU device, to which it deals workgroups; 0: another device
+// Threads of a CPU device, to which it deals workgroups; 0: another device.
+layout(constant_id = SPEC_WORKERS) const uint WORKERS = 0;
 const uint LONGEST_TURN = 6u;  // 64 workgroups, log2
 
 // Workgroups past 32768 are folded into y by the host.
@@ -26,12 +27,14 @@ uint group_number() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGrou
 // The piece of work that is this workgroup's.
 uint global_group() {
   if (WORKERS <= 1u) return group_number();
-  return dealt(group_number(), group_count(), WORKERS, LONGEST_TURN);
+  return remap_workgroup(group_number(), group_count(), WORKERS, LONGEST_TURN);
 }
 
-// Place in the workgroup, whose size the device's subgroups divide. A CPU device finds the built-in one by dividing, lane by lane: 60
-// cycles a subgroup, where a whole kernel takes a thousand.
-uint local_index() { return WORKERS > 0u ? gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID : gl_LocalInvocationID.x; }
+// Place in the workgroup, whose size the device's subgroups divide. A CPU device finds the built-in one by dividing,
+// lane by lane: 60 cycles a subgroup, where a whole kernel takes a thousand.
+uint local_index() {
+  return WORKERS > 0u ? gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID : gl_LocalInvocationID.x;
+}
 uint global_index() { return global_group() * gl_WorkGroupSize.x + local_index(); }
 #endif
 

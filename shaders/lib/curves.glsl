@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Space-filling curves and the octahedral map: near keys are near rays. Hilbert, not Morton: no bundle straddles a jump.
+// Space-filling curves and the octahedral map: near keys are near rays. Hilbert, not Morton: no bundle straddles a
+// jump.
 #ifndef SHEAF_CURVES_GLSL
 #define SHEAF_CURVES_GLSL
 
@@ -44,7 +45,8 @@ uvec2 on_hilbert2(uint place, uint bits) {
   return p;
 }
 
-// Place on the 5D Hilbert curve: axes to transpose (Skilling, "Programming the Hilbert curve", AIP 707, 2004), then interleaved.
+// Place on the 5D Hilbert curve: axes to transpose (Skilling, "Programming the Hilbert curve", AIP 707, 2004), then
+// interleaved.
 uint hilbert5(uint x[5], uint bits) {
   for (uint q = 1u << (bits - 1u); q > 1u; q >>= 1) {
     uint m = q - 1u;

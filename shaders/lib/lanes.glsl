@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Exchanges within a subgroup of LANES, all of them active. Measured on llvmpipe: with 8 lanes a shuffle is one permutation; with 16 it
-// goes lane by lane through memory, as the built-in reductions always do (15 cycles a lane), but one lane's value is handed
-// round in two instructions. So reductions there are three permutations, or all lanes' values in turn.
+// Exchanges within a subgroup of LANES, all of them active. Measured on llvmpipe: with 8 lanes a shuffle is one
+// permutation; with 16 it goes lane by lane through memory, as the built-in reductions always do (15 cycles a lane),
+// but one lane's value is handed round in two instructions. So reductions there are three permutations, or all lanes'
+// values in turn.
 #ifndef SHEAF_LANES_GLSL
 #define SHEAF_LANES_GLSL
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -70,8 +71,8 @@ uint lanes_where(bool b) { return lanes_where(b, LANES); }
 bool any_lane(bool b) { return has_ballot() ? subgroupBallot(b) != uvec4(0) : or_lanes(b ? 1u : 0u) != 0u; }
 uint lanes_that(bool b) { return has_ballot() ? subgroupBallotBitCount(subgroupBallot(b)) : bitCount(lanes_where(b)); }
 
-// Arrays of a value a vector of rays: an element is picked by comparing with every index, which costs a CPU device a third of
-// what a gather does. V is the same in all lanes.
+// Arrays of a value a vector of rays: an element is picked by comparing with every index, which costs a CPU device a
+// third of what a gather does. V is the same in all lanes.
 #define PICK(result, array, v) \
   { \
     result = array[0]; \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Directions of vectors of any size. Squares and cross products leave the range of floats from 1e19 on, and below 1e-19: vectors
-// are scaled first, by powers of two, which changes no bit of a result that was in range.
+// Directions of vectors of any size. Squares and cross products leave the range of floats from 1e19 on, and below
+// 1e-19: vectors are scaled first, by powers of two, which changes no bit of a result that was in range.
 #ifndef SHEAF_UNIT_GLSL
 #define SHEAF_UNIT_GLSL
 
@@ -19,7 +19,8 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
   return size > 0.0 && size < uintBitsToFloat(0x7F800000u) ? v / size : otherwise;
 }
 
-// Unit, by the right-hand rule; `otherwise` where the triangle has no area. Halves, because a difference may be twice the largest float.
+// Unit, by the right-hand rule; `otherwise` where the triangle has no area. Halves, because a difference may be twice
+// the largest float.
 vec3 triangle_normal(vec3 a, vec3 b, vec3 c, vec3 otherwise) {
   vec3 e1 = of_size_one(0.5 * b - 0.5 * a), e2 = of_size_one(0.5 * c - 0.5 * a);
   return safe_normalize(cross(e1, e2), otherwise);

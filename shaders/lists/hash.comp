@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Keys (R 4.2, S): reflection and refraction rays by cell of the origin in a grid over the batch and of the direction on its map, as one
-// space of five dimensions; shadow rays by light, then by direction from it (point, spot) or place across it (directional). All along
-// Hilbert curves.
+// Keys (R 4.2, S): reflection and refraction rays by cell of the origin in a grid over the batch and of the direction
+// on its map, as one space of five dimensions; shadow rays by light, then by direction from it (point, spot) or place
+// across it (directional). All along Hilbert curves.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -48,8 +48,9 @@ uint shadow_key(Ray ray, uint light) {
 uint secondary_key(Ray ray) {
   vec3 p = batch_place(ray.origin);
   vec2 o = octahedral(ray.direction);
-  return hilbert5(uint[5](quantise(o.x, push.bits), quantise(o.y, push.bits), quantise(p.x, push.bits), quantise(p.y, push.bits),
-                          quantise(p.z, push.bits)), push.bits);
+  return hilbert5(uint[5](quantise(o.x, push.bits), quantise(o.y, push.bits), quantise(p.x, push.bits),
+                          quantise(p.y, push.bits), quantise(p.z, push.bits)),
+                  push.bits);
 }
 
 void main() {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounds of this batch's origins, over which hash lays its grid. Minima and maxima have no order, so neither has the result.
+// Bounds of this batch's origins, over which hash lays its grid. Minima and maxima have no order, so neither has the
+// result.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require

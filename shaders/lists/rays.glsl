@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A list: rays in slots, their hits, and an order (slot numbers), each known by its address, for no descriptor's bounds to be
-// checked (memory.glsl). Rays are read two words a load. First come the parts of `frame.capacity` rays that tracers read, RAY_PART words
-// each, then as many of what the rays are for, then the slots' pixels, one word each: compaction asks for nothing else.
+// A list: rays in slots, their hits, and an order (slot numbers), each known by its address, for no descriptor's bounds
+// to be checked (memory.glsl). Rays are read two words a load. First come the parts of `frame.capacity` rays that
+// tracers read, RAY_PART words each, then as many of what the rays are for, then the slots' pixels, one word each:
+// compaction asks for nothing else.
 #ifndef SHEAF_RAYS_GLSL
 #define SHEAF_RAYS_GLSL
 #extension GL_EXT_buffer_reference : require
@@ -11,7 +12,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { u
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayPixel { uint v; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListSlot { uint v; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer ListHit { uint64_t v; };  // low word: triangle; high: t
+// Low word: triangle; high: t.
+layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer ListHit { uint64_t v; };
 
 // In push constants: what Recorder::bind_list was given last.
 #define PUSH_LIST                          \
@@ -30,7 +32,7 @@ struct Ray {
   float tmax;
 };
 
-struct RayLoad {  // what the ray is for
+struct RayPayload {  // what the ray is for
   vec3 weight;
   float coverage;
   uint medium;
@@ -42,7 +44,9 @@ RayPairs ray_pairs(uvec2 list, uint slot, uint word) {
   uint place = word < RAY_PART ? slot : frame.capacity + slot;
   return RayPairs(pack64(list) + uint64_t(place * (4u * RAY_PART)));
 }
-RayPixel ray_pixel(uvec2 list, uint slot) { return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot))); }
+RayPixel ray_pixel(uvec2 list, uint slot) {
+  return RayPixel(pack64(list) + uint64_t(4u * (frame.capacity * RAY_WORDS + slot)));
+}
 
 vec2 load_ray_pair(uvec2 list, uint slot, uint word) {
   return uintBitsToFloat(unpack32(ray_pairs(list, slot, word).pair[word % RAY_PART / 2u]));
@@ -59,13 +63,13 @@ Ray load_ray(uvec2 list, uint slot) {
 
 uint load_ray_medium(uvec2 list, uint slot) { return floatBitsToUint(load_ray_pair(list, slot, RAY_MEDIUM).x); }
 
-RayLoad load_ray_load(uvec2 list, uint slot) {
+RayPayload load_ray_payload(uvec2 list, uint slot) {
   vec2 a = load_ray_pair(list, slot, RAY_WEIGHT), b = load_ray_pair(list, slot, RAY_WEIGHT + 2u);
   uvec2 c = floatBitsToUint(load_ray_pair(list, slot, RAY_MEDIUM));
-  return RayLoad(vec3(a, b.x), b.y, c.x, c.y);
+  return RayPayload(vec3(a, b.x), b.y, c.x, c.y);
 }
 
-void store_ray(uvec2 list, uint slot, Ray ray, uint pixel, RayLoad carried) {
+void store_ray(uvec2 list, uint slot, Ray ray, uint pixel, RayPayload carried) {
   store_ray_pair(list, slot, RAY_ORIGIN, ray.origin.x, ray.origin.y);
   store_ray_pair(list, slot, RAY_ORIGIN + 2u, ray.origin.z, ray.direction.x);
   store_ray_pair(list, slot, RAY_DIRECTION + 1u, ray.direction.y, ray.direction.z);

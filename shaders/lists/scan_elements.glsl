@@ -53,7 +53,8 @@ uint scan_load(uint i) { return chunks[i].z; }
 void scan_store(uint i, uint before, uint own) { skeleton[before] = 0x80000000u | chunks[i].y; }
 void scan_total(uint total) {}
 #elif defined(SCAN_SEGMENTED)
-// Inclusive segmented scan of the skeleton: heads hold a chunk's base, the rest 1, so each place gets its ray's old place.
+// Inclusive segmented scan of the skeleton: heads hold a chunk's base, the rest 1, so each place gets its ray's old
+// place.
 BUFFER(ROLE_SKELETON, readonly, uint, skeleton);
 BUFFER(ROLE_SCAN_OUT, readonly, uint, order_kept);
 uint scan_count() { return counters[COUNT_RAYS + push.kind]; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One pass of a stable least-significant-digit radix sort of the chunks (Satish, Harris, Garland 2009), RADIX_BITS a pass:
-// count (a block's digits), spine (where each block's share of a digit starts), scatter. Stable because blocks, invocations within
-// a block and elements within an invocation's run all keep their order.
+// One pass of a stable least-significant-digit radix sort of the chunks (Satish, Harris, Garland 2009), RADIX_BITS a
+// pass: count (a block's digits), spine (where each block's share of a digit starts), scatter. Stable because blocks,
+// invocations within a block and elements within an invocation's run all keep their order.
 #ifndef SHEAF_SORT_GLSL
 #define SHEAF_SORT_GLSL
 #include "lib/counters.glsl"

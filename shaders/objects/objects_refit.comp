@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Boxes of the object hierarchy's nodes, one height at a time from the leaves: a node's height is listed once all its children's
-// are done. Boxes of triangles are widened by box_pad, so that triangle.glsl's argument holds.
+// Boxes of the object hierarchy's nodes, one height at a time from the leaves: a node's height is listed once all its
+// children's are done. Boxes of triangles are widened by box_pad, so that triangle.glsl's argument holds.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -47,7 +47,7 @@ void node_box(uint node, out vec3 lo, out vec3 hi) {
   }
   lo = grid.origin;
   hi = on_grid(grid, most);
-  if (grid.there == 0u) {
+  if (grid.present == 0u) {
     lo = vec3(INFINITY);
     hi = vec3(-INFINITY);
   }
@@ -87,7 +87,7 @@ void main() {
   uint at = work[push.first + i] * NODE_WORDS;
   Words nodes = Words(frame.nodes_at);
   vec3 lo[WIDE], hi[WIDE], least = vec3(INFINITY), most = vec3(-INFINITY);
-  uint there = 0u;
+  uint present = 0u;
   [[unroll]] for (uint c = 0u; c < WIDE; ++c) {
     uint child = nodes.word[at + NODE_CHILD + c];
     lo[c] = vec3(INFINITY);
@@ -97,22 +97,22 @@ void main() {
       node_box(child, lo[c], hi[c]);
     else
       leaf_box(child, lo[c], hi[c]);
-    if (lo[c].x <= hi[c].x) there |= 1u << c;
+    if (lo[c].x <= hi[c].x) present |= 1u << c;
     least = min(least, lo[c]);
     most = max(most, hi[c]);
   }
-  if (there == 0u) least = most = vec3(0);
+  if (present == 0u) least = most = vec3(0);
   uint words[16];
   for (uint w = 0u; w < 16u; ++w) words[w] = 0u;
-  words[NODE_STEPS] = there << 24;
+  words[NODE_STEPS] = present << 24;
   [[unroll]] for (uint axis = 0u; axis < 3u; ++axis) {
     uint e = exponent_for(least[axis], most[axis]);
     words[axis] = floatBitsToUint(least[axis]);
     words[NODE_STEPS] |= e << (8u * axis);
     [[unroll]] for (uint c = 0u; c < WIDE; ++c) {
-      bool is_there = (there & (1u << c)) != 0u;
-      uint low = is_there ? round_down(least[axis], e, lo[c][axis]) : 255u;
-      uint high = is_there ? round_up(least[axis], e, hi[c][axis]) : 0u;
+      bool is_present = (present & (1u << c)) != 0u;
+      uint low = is_present ? round_down(least[axis], e, lo[c][axis]) : 255u;
+      uint high = is_present ? round_up(least[axis], e, hi[c][axis]) : 0u;
       words[NODE_BOXES + 2u * axis + c / 4u] |= low << (8u * (c & 3u));
       words[NODE_BOXES + 6u + 2u * axis + c / 4u] |= high << (8u * (c & 3u));
     }

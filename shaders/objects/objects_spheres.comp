@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounding spheres of the triangles that moved, and of runs of them: whole instances (C: mesh spheres) and parts of these. Padded
-// by PAD of the radius for its own rounding and by twice box_pad, which covers what the edge functions may add to a triangle
-// (triangle.glsl).
+// Bounding spheres of the triangles that moved, and of runs of them: whole instances (C: mesh spheres) and parts of
+// these. Padded by PAD of the radius for its own rounding and by twice box_pad, which covers what the edge functions
+// may add to a triangle (triangle.glsl).
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -19,7 +19,8 @@ Ray camera_ray(uint x, uint y, vec2 place) {
     ray.origin = frame.eye;
     precise vec3 unit = direction / size;
     ray.direction = unit;
-    ray.tmin = frame.near * size;  // forward is a unit vector and right, up are square to it: |direction| = t a unit of depth
+    // Forward is a unit vector, and right and up are perpendicular to it: t is |direction| per unit of depth.
+    ray.tmin = frame.near * size;
     ray.tmax = frame.far * size;
   }
   return ray;

@@ -5,8 +5,9 @@
 #include "lib/convert.glsl"
 #include "lib/curves.glsl"
 
-// Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that follow from
-// them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as what is left.
+// Pixels are taken block by block, along a Hilbert curve within a block, so that the rays of a vector, and all that
+// follow from them, lie close together. A bijection for any size: blocks at the right and lower edges are as large as
+// what is left.
 uvec2 pixel_of(uint i) {
   const uint SIDE = 8u;
   uvec2 strip = divided(i, SIDE * frame.tile_width);  // which, and the place in it

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The rasteriser finds which triangles cover a sample; which is nearest is decided by the same t and the same tie as for traced
-// rays, in one 64-bit minimum. Interpolated depth would disagree with the ray tracer on coplanar and distant faces.
+// The rasteriser finds which triangles cover a sample; which is nearest is decided by the same t and the same tie as
+// for traced rays, in one 64-bit minimum. Interpolated depth would disagree with the ray tracer on coplanar and distant
+// faces.
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Raster for CPU devices, whose driver sets up a triangle at a time on one thread: a triangle a lane is placed in the picture; one
-// of few samples is tested by its lane, a sample after the other, a larger one by all lanes of its subgroup, along its spans.
+// Raster for CPU devices, whose driver sets up a triangle at a time on one thread: a triangle a lane is placed in the
+// picture; one of few samples is tested by its lane, a sample after the other, a larger one by all lanes of its
+// subgroup, along its spans.
 //
-// Outlines only choose which samples are tested, and err to the outside: whether a triangle is there, and at which t, is the
-// test that traced rays make. So the picture is that of traced rays to the last bit.
+// Outlines only choose which samples are tested, and err to the outside: whether a triangle is there, and at which t,
+// is the test that traced rays make. So the picture is that of traced rays to the last bit.
 //
-// How far outlines reach. The test takes a ray through a triangle whose corners moved by rounding: by less than ε|v|, v the corner
-// as seen from the eye, ε = 2^-21 (three roundings of the sheared corners, three of the ray's direction). What is computed here from
-// v rounds by no more. Hence what is said below of pixels and of edge functions, with ε to spare.
+// How far outlines reach. The test takes a ray through a triangle whose corners moved by rounding: by less than ε|v|, v
+// the corner as seen from the eye, ε = 2^-21 (three roundings of the sheared corners, three of the ray's direction).
+// What is computed here from v rounds by no more. Hence what is said below of pixels and of edge functions, with ε to
+// spare.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_EXT_control_flow_attributes : require
@@ -70,8 +72,9 @@ vec3 on_screen(vec3 v) {
   return vec3(screen.scale * vec2(x, y) + screen.centre * w, w);
 }
 
-// How far from `at` a corner may be seen. Moved by ε|v| at depth w: ε|v|/w · |v|/w · scale; computed to 2^-22 of its distance from the
-// middle; the rays' directions lie within 2^-22 of the picture's width (at most 16384 pixels) of their samples.
+// How far from `at` a corner may be seen. Moved by ε|v| at depth w: ε|v|/w · |v|/w · scale; computed to 2^-22 of its
+// distance from the middle; the rays' directions lie within 2^-22 of the picture's width (at most 16384 pixels) of
+// their samples.
 float pad_of(float size, vec3 p, vec2 at) {
   float r = size / p.z;
   return 4.0 * EPSILON * (r * r * max(screen.reach.x, screen.reach.y) + abs(at.x) + abs(at.y)) + 0.015625;
@@ -82,8 +85,9 @@ void set_sides(float turn, float unsure, inout Outline o) {
   o.back = !(turn > unsure);
 }
 
-// Corners in the picture, each within `pad` of its place: the edge from P to Q is off by no more than pad (|a| + |b|) where the
-// triangle is. The inverse of depth is linear there: between those of the corners by the edges' shares of the area.
+// Corners in the picture, each within `pad` of its place: the edge from P to Q is off by no more than pad (|a| + |b|)
+// where the triangle is. The inverse of depth is linear there: between those of the corners by the edges' shares of the
+// area.
 void outline_in_picture(vec2 a, vec2 b, vec2 c, vec3 w, float pad, inout Outline o) {
   o.a = vec3(b.y - c.y, c.y - a.y, a.y - b.y);
   o.b = vec3(c.x - b.x, a.x - c.x, b.x - a.x);
@@ -93,13 +97,15 @@ void outline_in_picture(vec2 a, vec2 b, vec2 c, vec3 w, float pad, inout Outline
   float area = o.a.x * a.x + o.b.x * a.y + o.c.x, all = sides.x + sides.y + sides.z;
   set_sides(area, 2.0 * pad * all, o);
   vec3 inverse = 1.0 / w;
-  float share = all / abs(area), most = greatest(inverse), reach = greatest(abs(vec3(a.x, b.x, c.x))) + greatest(abs(vec3(a.y, b.y, c.y)));
+  float share = all / abs(area), most = greatest(inverse),
+        reach = greatest(abs(vec3(a.x, b.x, c.x))) + greatest(abs(vec3(a.y, b.y, c.y)));
   if (!(pad * share < 0.125)) return;
   float off = 4.0 * pad * share * (most - least(inverse)) + (4.0 * EPSILON * share * reach + 1.52587890625e-5) * most;
   o.inverse = vec3(dot(o.a, inverse), dot(o.b, inverse), dot(o.c, inverse)) / area + vec3(0.0, 0.0, off);
 }
 
-// Corners beside or behind the eye: edges as planes through it. Three products of two terms, each off by 4ε of what |v| allows.
+// Corners beside or behind the eye: edges as planes through it. Three products of two terms, each off by 4ε of what |v|
+// allows.
 void outline_in_space(vec3 p, vec3 q, vec3 r, vec3 size, inout Outline o) {
   vec3 bc = cross(q, r), ca = cross(r, p), ab = cross(p, q);
   o.a = vec3(bc.x, ca.x, ab.x);
@@ -138,7 +144,8 @@ Outline outline_of(Corners t) {
   else
     outline_in_space(p, q, r, size, o);
   if (frame.orthographic != 0u) o.inverse = vec3(0.0, 0.0, INFINITY);  // w is not the depth
-  if (greatest(depth + off) < frame.near * (1.0 - 4.0 * EPSILON) || o.nearest > frame.far * (1.0 + 4.0 * EPSILON)) o.hi.x = -1.0;
+  if (greatest(depth + off) < frame.near * (1.0 - 4.0 * EPSILON) || o.nearest > frame.far * (1.0 + 4.0 * EPSILON))
+    o.hi.x = -1.0;
   return o;
 }
 
@@ -166,13 +173,15 @@ vec2 span_of(Outline o, float y) {
 void test_sample(vec2 place, Outline o, Corners corners, uint triangle) {
   uvec2 at = to_uint(place);
   uint pixel = at.y * frame.tile_width + at.x;
-  float seen = OneFloat(pack64(push.shown) + uint64_t(8u * pixel + 4u)).v;  // only ever falls: a stale value costs a test, nothing else
+  // Only ever falls: a stale value costs a test, nothing else.
+  float seen = OneFloat(pack64(push.shown) + uint64_t(8u * pixel + 4u)).v;
   vec2 aside = (place - screen.centre) * screen.aside;
   float below = (dot(o.inverse.xy, place) + o.inverse.z) * seen;
   if (o.nearest > seen || below * below < 1.0 + dot(aside, aside)) return;
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, frame.place);
   // No further than what is seen; before there is anything, that is a NaN.
-  TriangleHit h = seen_corners(make_shear(ray.origin, ray.direction), corners, ray.tmin, seen < ray.tmax ? seen : ray.tmax);
+  TriangleHit h =
+      seen_corners(make_shear(ray.origin, ray.direction), corners, ray.tmin, seen < ray.tmax ? seen : ray.tmax);
   if (!h.hit) return;
   uint64_t found = (uint64_t(floatBitsToUint(h.t) & 0x7FFFFFFFu) << 32) | uint64_t(triangle);
   if (MASKED && (corners.instance & TRIANGLE_MASKED) != 0u && masked_out(triangle, h.barycentric)) return;
@@ -196,8 +205,8 @@ void test_rectangle(Outline o, Corners corners, uint triangle) {
 
 // All lanes along the spans of one lane's triangle: first a row a lane, then a sample a lane.
 void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
-  Outline o = Outline(FROM(mine.lo), FROM(mine.hi), FROM(mine.a), FROM(mine.b), FROM(mine.c), FROM(mine.slack), FROM(mine.front),
-                      FROM(mine.back), FROM(mine.nearest), FROM(mine.inverse));
+  Outline o = Outline(FROM(mine.lo), FROM(mine.hi), FROM(mine.a), FROM(mine.b), FROM(mine.c), FROM(mine.slack),
+                      FROM(mine.front), FROM(mine.back), FROM(mine.nearest), FROM(mine.inverse));
   Corners corners = Corners(FROM(own.a), FROM(own.b), FROM(own.c), FROM(own.instance));
   uint triangle = FROM(own_triangle);
   float lane = float(gl_SubgroupInvocationID);
@@ -216,19 +225,20 @@ void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
 
 void main() {
   // Neighbours go to different threads: what is seen large is so for many in a row.
-  uint blocks = group_count() / push.bands, first = dealt(group_number() / push.bands, blocks, WORKERS, 0u) * gl_WorkGroupSize.x;
+  uint blocks = group_count() / push.bands,
+       first = remap_workgroup(group_number() / push.bands, blocks, WORKERS, 0u) * gl_WorkGroupSize.x;
   if (group_number() >= blocks * push.bands || first >= frame.triangles) return;
   uint triangle = first + local_index();
-  bool there = triangle < frame.triangles;
+  bool is_active = triangle < frame.triangles;
   triangle = min(triangle, frame.triangles - 1u);
   screen = screen_of(group_number() % push.bands);
   Corners corners = load_triangle(triangle);
   Outline o = outline_of(corners);
   vec2 extent = o.hi - o.lo + 1.0;
-  there = there && extent.x > 0.0 && extent.y > 0.0;
+  is_active = is_active && extent.x > 0.0 && extent.y > 0.0;
   bool few = extent.x * extent.y <= float(FEW);
-  if (there && few) test_rectangle(o, corners, triangle);
-  bool large = there && !few;
+  if (is_active && few) test_rectangle(o, corners, triangle);
+  bool large = is_active && !few;
   while (any_lane(large)) {
     uint from = LANES > 32u ? subgroupBallotFindLSB(subgroupBallot(large)) : lowest_bit(lanes_where(large));
     test_spans(from, o, corners, triangle);

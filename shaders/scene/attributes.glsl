@@ -4,14 +4,14 @@
 #define SHEAF_ATTRIBUTES_GLSL
 #include "scene/textures.glsl"
 
-struct Looks {
+struct ShadingInputs {
   Instance instance;
   Material material;
 };
 
-Looks looks_of(uint index) {
+ShadingInputs shading_inputs_of(uint index) {
   Instance instance = load_instance(index);
-  return Looks(instance, load_material(instance.material));
+  return ShadingInputs(instance, load_material(instance.material));
 }
 
 vec2 interpolate_uv(uint base, uvec3 v, vec3 b) {
@@ -30,13 +30,14 @@ UvFootprint interpolate_uv_footprint(uint base, uvec3 v, vec3 b, vec2 along, vec
 vec4 base_color_at(Instance instance, Material material, uvec3 v, vec3 b, vec4 texel) {
   vec4 color = material.base_color * texel;
   if (instance.color != NO_INDEX)
-    color *= load_color(instance.color + v.x) * b.x + load_color(instance.color + v.y) * b.y + load_color(instance.color + v.z) * b.z;
+    color *= load_color(instance.color + v.x) * b.x + load_color(instance.color + v.y) * b.y +
+             load_color(instance.color + v.z) * b.z;
   return color;
 }
 
 // An alpha-masked surface that is not there at this point.
 bool masked_out(uint triangle, vec3 b) {
-  Looks looks = looks_of(instance_of(load_triangle(triangle)));
+  ShadingInputs looks = shading_inputs_of(instance_of(load_triangle(triangle)));
   if ((looks.material.flags & MATERIAL_MASK) == 0u) return false;
   uvec3 v = triangle_vertices(looks.instance, triangle);
   vec2 uv0 = interpolate_uv(looks.instance.uv0, v, b), uv1 = interpolate_uv(looks.instance.uv1, v, b);

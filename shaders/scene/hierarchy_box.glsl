@@ -9,7 +9,7 @@ void hierarchy_box(out vec3 lo, out vec3 hi) {
   lo = vec3(INFINITY);
   hi = vec3(-INFINITY);
   for (uint c = 0u; c < WIDE; ++c) {
-    if ((boxes.grid.there & (1u << c)) == 0u) continue;
+    if ((boxes.grid.present & (1u << c)) == 0u) continue;
     vec3 child_lo, child_hi;
     child_box(boxes, c, child_lo, child_hi);
     lo = min(lo, child_lo);

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: MIT
-// What makes up the scene is read by address, triangles and nodes two words at a time. A descriptor's bounds are checked for
-// every lane and word that lanes gather, which on a CPU device costs more than the load; and a buffer behind an address may be
-// larger than maxStorageBufferRange. Indices come from buffers that the engine filled itself.
+// What makes up the scene is read by address, triangles and nodes two words at a time. A descriptor's bounds are
+// checked for every lane and word that lanes gather, which on a CPU device costs more than the load; and a buffer
+// behind an address may be larger than maxStorageBufferRange. Indices come from buffers that the engine filled itself.
 #ifndef SHEAF_MEMORY_GLSL
 #define SHEAF_MEMORY_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-layout(constant_id = SPEC_POSED) const bool POSED = false;  // triangles are posed whenever they are read: only their last word is kept
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs { uint64_t pair[TRIANGLE_WORDS / 2]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer NodePairs { uint64_t pair[NODE_WORDS / 2]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WordPairs { uint64_t pair[INSTANCE_WORDS / 2]; };
+// Triangles are transformed by their instances whenever they are read: only their last word is kept.
+layout(constant_id = SPEC_TRANSFORM_ON_FETCH) const bool TRANSFORM_ON_FETCH = false;
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs {
+  uint64_t pair[TRIANGLE_WORDS / 2];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer NodePairs {
+  uint64_t pair[NODE_WORDS / 2];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer WordPairs {
+  uint64_t pair[INSTANCE_WORDS / 2];
+};
 
 // Offsets fit 32 bits: a buffer is at most 4 GiB (checked where it is made).
-TrianglePairs triangle_pairs(uint triangle) { return TrianglePairs(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS))); }
+TrianglePairs triangle_pairs(uint triangle) {
+  return TrianglePairs(pack64(frame.triangles_at) + uint64_t(triangle * (4u * TRIANGLE_WORDS)));
+}
 NodePairs node_pairs(uint node) { return NodePairs(pack64(frame.nodes_at) + uint64_t(node * (4u * NODE_WORDS))); }
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer OneUint { uint v; };
@@ -30,7 +39,9 @@ vec3 load_dynamic(uint i) { return OneVec3(pack64(frame.dynamic_at) + uint64_t(i
 vec4 load_tangent(uint i) { return OneVec4(pack64(frame.tangents_at) + uint64_t(i * 16u)).v; }
 vec4 load_color(uint i) { return OneVec4(pack64(frame.colors_at) + uint64_t(i * 16u)).v; }
 
-uvec2 load_pair(uvec2 buffer_at, uint offset, uint k) { return unpack32(WordPairs(pack64(buffer_at) + uint64_t(offset)).pair[k]); }
+uvec2 load_pair(uvec2 buffer_at, uint offset, uint k) {
+  return unpack32(WordPairs(pack64(buffer_at) + uint64_t(offset)).pair[k]);
+}
 
 // The first of a structure's pairs, of a lane's own structure. (What lanes may share: shading_inputs.glsl.)
 #define LOAD_PAIRS(pairs, count, buffer_at, offset) \
@@ -39,11 +50,14 @@ uvec2 load_pair(uvec2 buffer_at, uint offset, uint k) { return unpack32(WordPair
 vec2 floats(uvec2 pair) { return uintBitsToFloat(pair); }
 vec4 floats(uvec2 first, uvec2 second) { return uintBitsToFloat(uvec4(first, second)); }
 
-const uint INSTANCE_PAIRS = INSTANCE_WORDS / 2u, MATERIAL_PAIRS = MATERIAL_USES / 2u, USE_PAIRS = USE_WORDS / 2u;  // a material's own
+// A material's own.
+const uint INSTANCE_PAIRS = INSTANCE_WORDS / 2u, MATERIAL_PAIRS = MATERIAL_USES / 2u, USE_PAIRS = USE_WORDS / 2u;
 
 uint instance_offset(uint index) { return index * (4u * INSTANCE_WORDS); }
 uint material_offset(uint index) { return index * (4u * MATERIAL_WORDS); }
-uint use_offset(uint material, uint place) { return material_offset(material) + 4u * (MATERIAL_USES + place * USE_WORDS); }
+uint use_offset(uint material, uint place) {
+  return material_offset(material) + 4u * (MATERIAL_USES + place * USE_WORDS);
+}
 
 Instance unpack_instance(uvec2 p[INSTANCE_PAIRS]) {
   vec4 f[5];
@@ -116,20 +130,20 @@ vec3 world_position(Instance i, uint v) {
   return world;
 }
 
-Corners pose_triangle(Instance instance, uint triangle, uint word) {
+Corners transform_triangle(Instance instance, uint triangle, uint word) {
   uvec3 v = triangle_vertices(instance, triangle);
   return Corners(world_position(instance, v.x), world_position(instance, v.y), world_position(instance, v.z), word);
 }
 
-Corners load_posed(uint triangle) {
+Corners fetch_transformed(uint triangle) {
   uint word = OneUint(pack64(frame.triangles_at) + uint64_t(4u * triangle)).v;
-  return pose_triangle(load_instance(word & TRIANGLE_INSTANCE_MASK), triangle, word);
+  return transform_triangle(load_instance(word & TRIANGLE_INSTANCE_MASK), triangle, word);
 }
 
 Corners load_triangle(uint triangle) {
-  if (POSED) return load_posed(triangle);
+  if (TRANSFORM_ON_FETCH) return fetch_transformed(triangle);
   TrianglePairs words = triangle_pairs(triangle);
-  return unpack_triangle(unpack32(words.pair[0]), unpack32(words.pair[1]), unpack32(words.pair[2]), unpack32(words.pair[3]),
-                         unpack32(words.pair[4]));
+  return unpack_triangle(unpack32(words.pair[0]), unpack32(words.pair[1]), unpack32(words.pair[2]),
+                         unpack32(words.pair[3]), unpack32(words.pair[4]));
 }
 #endif

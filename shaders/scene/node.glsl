@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Nodes of the object hierarchy: eight boxes on a grid of the node's own (shared.h). Decoding is monotone, and what encodes
-// (objects_refit) rounds outwards until the decoded box holds the true one: the containment that triangle.glsl relies on.
+// Nodes of the object hierarchy: eight boxes on a grid of the node's own (shared.h). Decoding is monotone, and what
+// encodes (objects_refit) rounds outwards until the decoded box holds the true one: the containment that triangle.glsl
+// relies on.
 #ifndef SHEAF_NODE_GLSL
 #define SHEAF_NODE_GLSL
 #include "scene/memory.glsl"
@@ -8,12 +9,12 @@
 struct Grid {
   vec3 origin;
   vec3 step;   // powers of two
-  uint there;  // a bit a child
+  uint present;  // a bit a child
 };
 
 Grid unpack_grid(uvec2 p0, uvec2 p1) {
-  return Grid(uintBitsToFloat(uvec3(p0, p1.x)), uintBitsToFloat(uvec3(p1.y & 255u, (p1.y >> 8) & 255u, (p1.y >> 16) & 255u) << 23),
-              p1.y >> 24);
+  return Grid(uintBitsToFloat(uvec3(p0, p1.x)),
+              uintBitsToFloat(uvec3(p1.y & 255u, (p1.y >> 8) & 255u, (p1.y >> 16) & 255u) << 23), p1.y >> 24);
 }
 
 vec3 on_grid(Grid g, uvec3 place) {
@@ -34,21 +35,23 @@ void child_box(Boxes b, uint c, out vec3 lo, out vec3 hi) {
   hi = on_grid(b.grid, uvec3(byte_of(b.hx, c), byte_of(b.hy, c), byte_of(b.hz, c)));
 }
 
-// The planes of each axis that rays run against are exchanged: what was low is then what such a ray meets first. To exchange the bytes of
-// eight boxes takes as much as to exchange one box' planes.
+// The planes of each axis that rays run against are exchanged: what was low is then what such a ray meets first. To
+// exchange the bytes of eight boxes takes as much as to exchange one box' planes.
 Boxes turned_boxes(Boxes b, bvec3 backwards) {
-  return Boxes(b.grid, backwards.x ? b.hx : b.lx, backwards.y ? b.hy : b.ly, backwards.z ? b.hz : b.lz, backwards.x ? b.lx : b.hx,
-               backwards.y ? b.ly : b.hy, backwards.z ? b.lz : b.hz);
+  return Boxes(b.grid, backwards.x ? b.hx : b.lx, backwards.y ? b.hy : b.ly, backwards.z ? b.hz : b.lz,
+               backwards.x ? b.lx : b.hx, backwards.y ? b.ly : b.hy, backwards.z ? b.lz : b.hz);
 }
 
 bool is_node(uint child) { return (child & CHILD_LEAF) == 0u; }
 uint leaf_first(uint child) { return child & 0x07FFFFFFu; }
 uint leaf_count(uint child) { return ((child >> 27) & 15u) + 1u; }
 
-uint octant_of(vec3 direction) { return (direction.x < 0.0 ? 1u : 0u) | (direction.y < 0.0 ? 2u : 0u) | (direction.z < 0.0 ? 4u : 0u); }
+uint octant_of(vec3 direction) {
+  return (direction.x < 0.0 ? 1u : 0u) | (direction.y < 0.0 ? 2u : 0u) | (direction.z < 0.0 ? 4u : 0u);
+}
 
-// Children of a node stand in the slot of the octant they lie in (slot_order.hpp): visited in the order slot ^ octant they come
-// roughly front to back. A mask of slots in that order:
+// Children of a node stand in the slot of the octant they lie in (slot_order.hpp): visited in the order slot ^ octant
+// they come roughly front to back. A mask of slots in that order:
 uint in_visiting_order(uint mask, uint octant) {
   if ((octant & 1u) != 0u) mask = ((mask & 0x55u) << 1) | ((mask >> 1) & 0x55u);
   if ((octant & 2u) != 0u) mask = ((mask & 0x33u) << 2) | ((mask >> 2) & 0x33u);

@@ -4,7 +4,8 @@
 #define SHEAF_NODE_BOXES_GLSL
 Boxes load_boxes(uint node) {
   NodePairs words = node_pairs(node);
-  return Boxes(unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1])), unpack32(words.pair[2]), unpack32(words.pair[3]),
-               unpack32(words.pair[4]), unpack32(words.pair[5]), unpack32(words.pair[6]), unpack32(words.pair[7]));
+  return Boxes(unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1])), unpack32(words.pair[2]),
+               unpack32(words.pair[3]), unpack32(words.pair[4]), unpack32(words.pair[5]), unpack32(words.pair[6]),
+               unpack32(words.pair[7]));
 }
 #endif

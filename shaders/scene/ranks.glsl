@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Surfaces that lie in one place have ranks (engine/scene/coincident.hpp), and a ray meets them in the order of these: a hit counts
-// as if it lay `rank` steps further along the ray. A step is what rounding may add to the difference of two such hits' t, so
-// their order is that of the ranks; and it is one order of all hits, so the nearest is the same whoever is asked first. It only
-// adds to t: a box that begins beyond the nearest hit so far holds none that comes before it.
+// Surfaces that lie in one place have ranks (engine/scene/coincident.hpp), and a ray meets them in the order of these:
+// a hit counts as if it lay `rank` steps further along the ray. A step is what rounding may add to the difference of
+// two such hits' t, so their order is that of the ranks; and it is one order of all hits, so the nearest is the same
+// whoever is asked first. It only adds to t: a box that begins beyond the nearest hit so far holds none that comes
+// before it.
 //
 // SHADING.md, Coincident surfaces, has the rule and the bound.
 #ifndef SHEAF_RANKS_GLSL

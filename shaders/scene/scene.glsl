@@ -6,7 +6,8 @@
 #include "scene/triangle.glsl"
 #include "scene/ranks.glsl"
 
-// The sign that turns (b − a) × (c − a) to the front: of the instance's matrix, or of the triangle's own skinning matrices.
+// The sign that turns (b − a) × (c − a) to the front: of the instance's matrix, or of the triangle's own skinning
+// matrices.
 float front_sign(Corners corners) {
   return uintBitsToFloat(0x3F800000u | ((corners.instance & TRIANGLE_MIRRORED) << 3));
 }
@@ -25,8 +26,8 @@ TriangleHit intersect_corners(Shear s, Corners v, float tmin, float tmax) {
   return intersect_triangle(s, v.a, v.b, v.c, frame.box_pad, tmin, tmax);
 }
 
-// What rays other than shadow rays meet: `tmax` bounds where the hit counts. A tmin below 0: the ray starts in a place that has ranks,
-// behind so much of it.
+// What rays other than shadow rays meet: `tmax` bounds where the hit counts. A tmin below 0: the ray starts in a place
+// that has ranks, behind so much of it.
 TriangleHit seen_corners(Shear s, Corners v, float tmin, float tmax) {
   TriangleHit h = intersect_corners(s, v, tmin, tmax);
   h.hit = h.hit && !is_hidden(v.instance, h.clockwise);

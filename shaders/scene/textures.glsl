@@ -6,10 +6,12 @@
 #include "lib/convert.glsl"
 layout(constant_id = SPEC_TEXTURED) const bool TEXTURED = true;
 
-// Bytes of sRGB (IEC 61966-2-1). Above the linear part ((b/255 + 0.055)/1.055)^2.4 = s^5 · s^-0.2, s its square root; the last factor
-// is a polynomial of s − 1 of least greatest relative error over all bytes: 1.3e-6, as close as `pow` is; 255 gives 1.
+// Bytes of sRGB (IEC 61966-2-1). Above the linear part ((b/255 + 0.055)/1.055)^2.4 = s^5 · s^-0.2, s its square root;
+// the last factor is a polynomial of s − 1 of least greatest relative error over all bytes: 1.3e-6, as close as `pow`
+// is; 255 gives 1.
 vec3 srgb_to_linear(vec3 b) {
-  const float factors[8] = float[](2.6782398, 5.6563973, 5.2597384, 2.4563444, 0.74564469, 0.0095650116, 0.12670356, -0.19984418);
+  const float factors[8] =
+      float[](2.6782398, 5.6563973, 5.2597384, 2.4563444, 0.74564469, 0.0095650116, 0.12670356, -0.19984418);
   vec3 y = b * (1.0 / (255.0 * 1.055)) + 0.055 / 1.055, s = sqrt(y), x = s - 1.0, p = vec3(factors[0]);
   for (uint k = 1u; k < 8u; ++k) p = p * x + factors[k];
   p = p * x + 1.0;
@@ -18,8 +20,8 @@ vec3 srgb_to_linear(vec3 b) {
 
 vec4 bytes_of(uint word) { return vec4(ivec4(word & 255u, (word >> 8) & 255u, (word >> 16) & 255u, word >> 24)); }
 
-// Texel i and the next. Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU device. All is exact
-// but the quotient, and its floor is off by one at most.
+// Texel i and the next. Whole numbers up to 2^23 as floats: a remainder of integers is a division a lane on a CPU
+// device. All is exact but the quotient, and its floor is off by one at most.
 vec2 wrap_two(float i, float size, uint mode) {
   if (mode == 2u) return clamp(vec2(i, i + 1.0), 0.0, size - 1.0);
   float period = mode == 1u ? 2.0 * size : size;
@@ -79,8 +81,8 @@ struct TexturePoint {
   UvFootprint uv0, uv1;
 };
 
-// The mean over the footprint: up to MAX_TAPS taps along its longer diameter, each from the two levels whose texels are about as
-// large as what is left to cover (Heckbert 1989 and McCormack et al. 1999, as graphics hardware does it).
+// The mean over the footprint: up to MAX_TAPS taps along its longer diameter, each from the two levels whose texels are
+// about as large as what is left to cover (Heckbert 1989 and McCormack et al. 1999, as graphics hardware does it).
 const float MAX_TAPS = 8.0;
 
 vec4 sample_filtered(TextureUse t, UvFootprint f, bool srgb) {
@@ -107,7 +109,8 @@ vec4 sample_filtered(TextureUse t, UvFootprint f, bool srgb) {
 
 bool is_color(uint place) { return place == TEXTURE_BASE_COLOR || place == TEXTURE_EMISSIVE; }
 
-// The image itself, unfiltered: what decides whether and how a ray passes. White where the material has no such texture.
+// The image itself, unfiltered: what decides whether and how a ray passes. White where the material has no such
+// texture.
 vec4 look_up(uint material, uint place, vec2 uv0, vec2 uv1) {
   if (!TEXTURED) return vec4(1);
   TextureUse use = load_use(material, place);
@@ -115,8 +118,8 @@ vec4 look_up(uint material, uint place, vec2 uv0, vec2 uv1) {
   return sample_level(level_of(use, 0u), use.flags, transform_uv(use, uv0, uv1), is_color(place));
 }
 
-// The first `count` textures of a material. A loop that stays one: a lookup is a thousand instructions on a CPU device, and six
-// copies of it take a driver seconds to compile.
+// The first `count` textures of a material. A loop that stays one: a lookup is a thousand instructions on a CPU device,
+// and six copies of it take a driver seconds to compile.
 void look_up_all(uint material, uint count, vec2 uv0, vec2 uv1, out vec4 texels[TEXTURES]) {
   for (uint k = 0u; k < TEXTURES; ++k) texels[k] = vec4(1);
   if (!TEXTURED) return;

@@ -2,8 +2,8 @@
 // The one definition of "this ray hits this triangle", the same bits in every strategy.
 //
 // Watertight: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The edge functions of two
-// triangles that share an edge are exact negatives of each other (no contraction: `precise`), so no ray slips between them;
-// a zero is settled by the exact sign of the two products (Dekker's splitting).
+// triangles that share an edge are exact negatives of each other (no contraction: `precise`), so no ray slips between
+// them; a zero is settled by the exact sign of the two products (Dekker's splitting).
 //
 // Box-consistent: a hit also passes the slab test of the triangle's own padded box, and t is clamped to that interval.
 // Subtraction and multiplication by a constant are monotone under rounding, so the interval of any box that holds the
@@ -55,7 +55,8 @@ float least(vec3 v) {
   return xy < v.z ? xy : v.z;
 }
 
-// Entry and exit along the ray of a box (already padded), given its planes in the order in which the ray meets them. Hit where x <= y.
+// Entry and exit along the ray of a box (already padded), given its planes in the order in which the ray meets them.
+// Hit where x <= y.
 vec2 slab_in_order(Shear s, vec3 near, vec3 far) {
   precise vec3 entry = (near - s.origin) * s.inverse;
   precise vec3 leave = (far - s.origin) * s.inverse;
@@ -112,11 +113,13 @@ Edges edge_functions(Shear s, vec3 v0, vec3 v1, vec3 v2) {
   return Edges(vec2(ax, ay), vec2(bx, by), vec2(cx, cy), vec3(u, v, w), depth);
 }
 
-// The weights e/Σe put the hit where Σ e·(x, y)/Σe = 0. What rounding products adds to e breaks that by up to 2^-23·|product|/Σe of the
-// triangle's extent: on a needle, or one seen edge-on, along its length, and t with it. Differences of exact products end that: what is left
-// of the error is that of the sheared corners, as if the triangle itself had been moved by some ulps. Signs stay: rounding is monotone.
+// The weights e/Σe put the hit where Σ e·(x, y)/Σe = 0. What rounding products adds to e breaks that by up to
+// 2^-23·|product|/Σe of the triangle's extent: on a needle, or one seen edge-on, along its length, and t with it.
+// Differences of exact products end that: what is left of the error is that of the sheared corners, as if the triangle
+// itself had been moved by some ulps. Signs stay: rounding is monotone.
 vec3 exact_where_ill_conditioned(Edges t) {
-  vec3 p = abs(vec3(t.c.x * t.b.y, t.a.x * t.c.y, t.b.x * t.a.y)), q = abs(vec3(t.c.y * t.b.x, t.a.y * t.c.x, t.b.y * t.a.x));
+  vec3 p = abs(vec3(t.c.x * t.b.y, t.a.x * t.c.y, t.b.x * t.a.y)),
+       q = abs(vec3(t.c.y * t.b.x, t.a.y * t.c.x, t.b.y * t.a.x));
   vec3 product = max(p, q);
   if (max(max(product.x, product.y), product.z) <= 4.0 * abs(t.e.x + t.e.y + t.e.z)) return t.e;
   return vec3(exact_difference(t.c.x, t.b.y, t.c.y, t.b.x), exact_difference(t.a.x, t.c.y, t.a.y, t.c.x),
@@ -131,7 +134,8 @@ struct TriangleHit {
   float area;        // twice the triangle's, sheared; with any sign
 };
 
-// (v1 − v0)×(v2 − v0)·direction = −Σe/sz: the shear's determinant is sz, and Σe is minus twice the area of the sheared triangle.
+// (v1 − v0)×(v2 − v0)·direction = −Σe/sz: the shear's determinant is sz, and Σe is minus twice the area of the sheared
+// triangle.
 bool is_clockwise(Shear s, float sum) { return (sum < 0.0) != (s.sz < 0.0); }
 
 TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, float tmin, float tmax) {
@@ -162,7 +166,8 @@ TriangleHit intersect_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float pad, fl
   return result;
 }
 
-// The point of a triangle that a ray is known to hit (the rasteriser may have seen it just outside): weights not below 0.
+// The point of a triangle that a ray is known to hit (the rasteriser may have seen it just outside): weights not below
+// 0.
 TriangleHit project_to_triangle(Shear s, vec3 v0, vec3 v1, vec3 v2, float tmin) {
   TriangleHit result;
   Edges edges = edge_functions(s, v0, v1, v2);

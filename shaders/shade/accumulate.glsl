@@ -3,7 +3,8 @@
 #ifndef SHEAF_ACCUMULATE_GLSL
 #define SHEAF_ACCUMULATE_GLSL
 #include "lib/convert.glsl"
-layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer PixelSums { uint64_t channel[4]; };  // R G B alpha
+// R G B alpha.
+layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer PixelSums { uint64_t channel[4]; };
 PixelSums sums_of(uint pixel) { return PixelSums(pack64(frame.sums_at) + uint64_t(32u * pixel)); }
 
 uint64_t to_fixed(float v) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Shades the hits of one list of rays and makes the rays that follow from them: shadow rays (turned round, from the light),
-// reflection and refraction (SHADING.md, "What a hit adds"). Parent i writes reflection and refraction slot base + i and shadow
-// slots (base + i) + light · parents; a slot without a ray is marked, and compaction drops it.
+// Shades the hits of one list of rays and makes the rays that follow from them: shadow rays (turned round, from the
+// light), reflection and refraction (SHADING.md, "What a hit adds"). Parent i writes reflection and refraction slot
+// base + i and shadow slots (base + i) + light · parents; a slot without a ray is marked, and compaction drops it.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -21,7 +21,8 @@ layout(constant_id = SPEC_REFLECTIONS) const bool REFLECTIONS = true;
 layout(constant_id = SPEC_REFRACTIONS) const bool REFRACTIONS = true;
 layout(constant_id = SPEC_VOLUMES) const bool VOLUMES = true;
 layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;    // some surface has T > 0
-layout(constant_id = SPEC_GLASS_ALPHA) const bool GLASS_ALPHA = false;  // what is seen through such surfaces is not covered
+// What is seen through such surfaces is not covered.
+layout(constant_id = SPEC_GLASS_ALPHA) const bool GLASS_ALPHA = false;
 
 layout(push_constant) uniform Push {
   uint kind;        // of the parents
@@ -36,10 +37,10 @@ layout(push_constant) uniform Push {
 #include "shade/parents.glsl"
 
 // All lanes are active.
-Light light_together(uint index) {
+Light load_light_subgroup(uint index) {
   uvec2 p[LIGHT_PAIRS];
-  if (TOGETHER) {
-    LOAD_TOGETHER(p, LIGHT_PAIRS, frame.lights_at, 8u * LIGHT_PAIRS * index);
+  if (LOADS_BY_SUBGROUP) {
+    LOAD_SUBGROUP(p, LIGHT_PAIRS, frame.lights_at, 8u * LIGHT_PAIRS * index);
   } else {
     LOAD_PAIRS(p, LIGHT_PAIRS, frame.lights_at, 8u * LIGHT_PAIRS * index);
   }
@@ -105,7 +106,8 @@ void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight,
   if (lifted) s.point += s.lift * s.vertex_normal;
   vec3 target = offset_origin(s, lifted ? s.geometric : l, light.kind == LIGHT_DIRECTIONAL ? 0.0 : distance);
   vec3 origin = light.position, direction = target - light.position;
-  float tmin = 0.25 * frame.box_pad, tmax = length(direction);  // SHADING.md, Lights: a lamp's own surface does not hide it
+  // SHADING.md, Lights: a lamp's own surface does not hide it.
+  float tmin = 0.25 * frame.box_pad, tmax = length(direction);
   if (light.kind == LIGHT_DIRECTIONAL) {
     origin = target;
     direction = l;
@@ -114,11 +116,11 @@ void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight,
   } else {
     direction = tmax > 0.0 ? direction / tmax : -l;
   }
-  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayLoad(carried, 0.0, index, 0u));
+  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayPayload(carried, 0.0, index, 0u));
 }
 
-// What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's curvature, times
-// the cone's width there, adds to the spread; `scaling`: what becomes of the spread itself.
+// What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's
+// curvature, times the cone's width there, adds to the spread; `scaling`: what becomes of the spread itself.
 vec2 cone_after(Parent p, Surface s, float t, float scaling, float bending) {
   float width = clamp(p.cone_width + p.cone_spread * t, -1e30, 1e30);
   return vec2(width, clamp(scaling * p.cone_spread + bending * s.curvature * width, -MAX_SPREAD, MAX_SPREAD));
@@ -135,12 +137,13 @@ void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
   vec3 o;
   float tmin;
   start_ray(s, s.geometric, d, s.rank_behind, o, tmin);
-  store_ray(push.reflection_rays, slot, Ray(o, d, tmin, INFINITY), p.pixel, RayLoad(weight, 0.0, p.medium, p.past + ONE_BOUNCE));
+  store_ray(push.reflection_rays, slot, Ray(o, d, tmin, INFINITY), p.pixel,
+            RayPayload(weight, 0.0, p.medium, p.past + ONE_BOUNCE));
   if (TEXTURED) store_ray_cone(push.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
 }
 
 // Through the surface; `carried.past` counts this too.
-void store_ray_through(uint slot, Surface s, vec3 direction, RayLoad carried, uint pixel, vec2 cone) {
+void store_ray_through(uint slot, Surface s, vec3 direction, RayPayload carried, uint pixel, vec2 cone) {
   vec3 o;
   float tmin;
   start_ray(s, -s.geometric, direction, s.rank, o, tmin);
@@ -148,10 +151,11 @@ void store_ray_through(uint slot, Surface s, vec3 direction, RayLoad carried, ui
   if (TEXTURED) store_ray_cone(push.refraction_rays, slot, cone);
 }
 
-bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, Parent p, vec2 cone) {
+bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, Parent p,
+                         vec2 cone) {
   bool made = may_bounce(p) && worth_a_ray(max(largest(weight), coverage));
   if (made)
-    store_ray_through(slot, s, direction, RayLoad(weight, coverage, medium, p.past + ONE_BOUNCE), p.pixel, cone);
+    store_ray_through(slot, s, direction, RayPayload(weight, coverage, medium, p.past + ONE_BOUNCE), p.pixel, cone);
   else
     no_ray_refraction(slot);
   return made;
@@ -167,7 +171,7 @@ void make_straight_ray(uint slot, Surface s, float alpha, float t, Parent p) {
     no_ray_refraction(slot);
     return;
   }
-  store_ray_through(slot, s, p.ray.direction, RayLoad(weight, coverage, p.medium, p.past + ONE_BLENDED), p.pixel,
+  store_ray_through(slot, s, p.ray.direction, RayPayload(weight, coverage, p.medium, p.past + ONE_BLENDED), p.pixel,
                     cone_after(p, s, t, 1.0, 0.0));
 }
 
@@ -203,7 +207,8 @@ void see_through(Surface s, Material m, Parent p, float nv, inout Lobes lobes, o
 }
 
 // Step 9. Gives what the ray takes along of the parent's coverage `cover`.
-float make_transmitted_ray(uint slot, Surface s, Material m, float t, vec3 weight, float cover, Parent p, Lobes lobes, Interface face) {
+float make_transmitted_ray(uint slot, Surface s, Material m, float t, vec3 weight, float cover, Parent p, Lobes lobes,
+                           Interface face) {
   vec3 share = (s.transmission * (1.0 - s.metallic) * (1.0 - lobes.dielectric)) * s.base.rgb;
   vec3 way = p.ray.direction;
   bool passes = lobes.dielectric < 1.0;
@@ -216,20 +221,20 @@ float make_transmitted_ray(uint slot, Surface s, Material m, float t, vec3 weigh
     cone = cone_after(p, s, t, eta, eta * face.cosine + dot(way, face.normal));
   }
   float coverage = GLASS_ALPHA ? cover * min(mean_of(share), 1.0) : 0.0;
-  bool made = make_refraction_ray(slot, s, way, passes ? weight * share : vec3(-1), face.medium, passes ? coverage : -1.0, p,
-                                  cone);
+  bool made = make_refraction_ray(slot, s, way, passes ? weight * share : vec3(-1), face.medium,
+                                  passes ? coverage : -1.0, p, cone);
   return made ? coverage : 0.0;
 }
 
 vec3 absorbed(Parent p, Surface s, Material m, float t) {
   uint top = p.medium & 0xFFu;
-  vec3 stops = vec3(0);
+  vec3 absorption = vec3(0);
   if (top != 0u)
-    stops = load_material(volume_material(top)).absorption;
+    absorption = load_material(volume_material(top)).absorption;
   else if (m.volume != 0u && !s.front)
-    stops = m.absorption;
-  return vec3(stops.x > 0.0 ? exp2(-stops.x * t) : 1.0, stops.y > 0.0 ? exp2(-stops.y * t) : 1.0,
-              stops.z > 0.0 ? exp2(-stops.z * t) : 1.0);
+    absorption = m.absorption;
+  return vec3(absorption.x > 0.0 ? exp2(-absorption.x * t) : 1.0, absorption.y > 0.0 ? exp2(-absorption.y * t) : 1.0,
+              absorption.z > 0.0 ? exp2(-absorption.z * t) : 1.0);
 }
 
 void add_own(uint pixel, vec3 light, float coverage) {
@@ -240,7 +245,8 @@ void add_own(uint pixel, vec3 light, float coverage) {
 }
 
 // The rays that go on from a surface, light's aside. Gives what one through glass takes along of the parent's coverage.
-float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight, float alpha, Parent p, Lobes lobes, Interface face) {
+float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight, float alpha, Parent p, Lobes lobes,
+                          Interface face) {
   if (REFLECTIONS && (m.flags & MATERIAL_UNLIT) == 0u)
     make_reflection_ray(slot, s, t, weight * (lobes.share * lobes.mirrored), p);
   else
@@ -255,7 +261,7 @@ float make_secondary_rays(uint slot, Surface s, Material m, float t, vec3 weight
 }
 
 // `there`: a lane without a hit only helps to read.
-void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool there) {
+void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool is_active) {
   Corners corners = load_triangle(triangle);
   TriangleHit at = project_to_triangle(make_shear(p.ray.origin, p.ray.direction), corners.a, corners.b, corners.c, 0.0);
   if (RANKED) t = at.t;  // the other says where the hit counts
@@ -282,33 +288,33 @@ void shade_hit(uint slot, uint parents, uint triangle, float t, Parent p, bool t
   if (TRANSLUCENT && s.transmission > 0.0) see_through(s, m, p, nv, lobes, face);
   vec3 own = unlit ? s.base.rgb : s.emission + frame.environment * ambient_of(s, lobes) * s.occlusion;
   covers += p.coverage * alpha;
-  if (there && GLASS_ALPHA) covers -= make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
-  if (there) add_own(p.pixel, weight * own, covers);
+  if (is_active && GLASS_ALPHA) covers -= make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
+  if (is_active) add_own(p.pixel, weight * own, covers);
   if (SHADOWS)
     for (uint i = 0u; i < frame.lights; ++i) {
-      Light light = light_together(i);
-      if (!there) continue;
+      Light light = load_light_subgroup(i);
+      if (!is_active) continue;
       uint shadow_slot = slot + i * parents;
       if (unlit)
         no_ray_shadow(shadow_slot);
       else
         make_shadow_ray(shadow_slot, light, i, s, weight, lobes, v, p.pixel);
     }
-  if (there && !GLASS_ALPHA) make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
+  if (is_active && !GLASS_ALPHA) make_secondary_rays(slot, s, m, t, weight, alpha, p, lobes, face);
 }
 
 void main() {
   uint i = global_index(), rays = counters[COUNT_RAYS + push.kind];
-  bool there = i < rays;
+  bool is_active = i < rays;
   i = min(i, rays - 1u);  // lanes past the last help to read
   uint parents = counters[COUNT_PARENTS];
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
   uvec2 hit;
   Parent p = RASTER && push.direct != 0u ? camera_parent(i, hit) : load_parent(i, hit);
-  bool hits = there && hit.x != NO_INDEX;
+  bool hits = is_active && hit.x != NO_INDEX;
   count_tests(push.kind, STAT_HITS, hits ? 1u : 0u);
-  if (goes_on(hits)) shade_hit(slot, parents, stand_in(hit.x, hits), uintBitsToFloat(hit.y), p, hits);
-  if (hits || !there) return;
+  if (continues(hits)) shade_hit(slot, parents, value_or_first(hit.x, hits), uintBitsToFloat(hit.y), p, hits);
+  if (hits || !is_active) return;
   add_own(p.pixel, p.coverage > 0.0 ? vec3(0) : p.weight * frame.environment, 0.0);
   if (SHADOWS)
     for (uint k = 0u; k < frame.lights; ++k) no_ray_shadow(slot + k * parents);

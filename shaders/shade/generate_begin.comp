@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Before each generate: how many parents there are, how many slots their rays need, and whether those fit. A band that does not
-// fit stops here, says so, and is cut in two by the host: nothing is dropped.
+// Before each generate: how many parents there are, how many slots their rays need, and whether those fit. A band that
+// does not fit stops here, says so, and is cut in two by the host: nothing is dropped.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The camera's rays of a batch: one sample of every pixel of a tile, or several of the pixels that adaptive sampling goes on with.
-// Under `--primary raster` their hits come with them: the visibility buffer names the triangle and its t.
+// The camera's rays of a batch: one sample of every pixel of a tile, or several of the pixels that adaptive sampling
+// goes on with. Under `--primary raster` their hits come with them: the visibility buffer names the triangle and its t.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -40,7 +40,7 @@ void main() {
   }
   uint pixel = at.y * frame.tile_width + at.x;
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, place);
-  store_ray(push.rays, i, ray, pixel, RayLoad(vec3(1), 1.0, 0u, 0u));
+  store_ray(push.rays, i, ray, pixel, RayPayload(vec3(1), 1.0, 0u, 0u));
   if (TEXTURED) store_ray_cone(push.rays, i, vec2(frame.cone_width, frame.cone_spread));
   hit_at(push.hits, i).v = RASTER ? visibility[pixel] : pack64(uvec2(NO_INDEX));
 }

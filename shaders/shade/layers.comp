@@ -12,13 +12,13 @@ layout(push_constant) uniform Push { PUSH_LIST } push;
 
 void main() {
   uint i = global_index(), pixels = frame.tile_width * frame.tile_height;
-  bool there = i < pixels;
+  bool is_active = i < pixels;
   i = min(i, pixels - 1u);
   uint triangle = unpack32(hit_at(push.hits, i).v).x, pixel = load_ray_pixel(push.rays, i);
-  bool hits = there && triangle != NO_INDEX;
+  bool hits = is_active && triangle != NO_INDEX;
   float words[LAYER_WORDS];
-  if (goes_on(hits)) {
-    triangle = stand_in(triangle, hits);
+  if (continues(hits)) {
+    triangle = value_or_first(triangle, hits);
     Ray ray = load_ray(push.rays, i);
     Corners corners = load_triangle(triangle);
     TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
@@ -39,6 +39,6 @@ void main() {
     for (uint w = 0u; w < LAYER_WORDS; ++w) words[w] = 0.0;
     words[LAYER_DEPTH] = INFINITY;
   }
-  if (!there) return;
+  if (!is_active) return;
   for (uint w = 0u; w < LAYER_WORDS; ++w) layers[w * pixels + pixel] = words[w];
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How a surface shares out what it gets (SHADING.md, 4 to 6): what it mirrors, what is left for its base, and its light of lamps.
+// How a surface shares out what it gets (SHADING.md, 4 to 6): what it mirrors, what is left for its base, and its light
+// of lamps.
 #ifndef SHEAF_LOBES_GLSL
 #define SHEAF_LOBES_GLSL
 struct Lobes {
   vec3 f0;           // of the mirroring lobe, straight on
-  vec3 mirrored;     // Fs: all that is mirrored of the way seen, whether by the reflection ray or from the surroundings at large
-  float dielectric;  // Fd: that of the part that is no metal; the rest is left for the base, whether diffuse or let through
+  // Fs: all that is mirrored of the way seen, whether by the reflection ray or from the surroundings at large.
+  vec3 mirrored;
+  // Fd: that of the part that is no metal; the rest is left for the base, whether diffuse or let through.
+  float dielectric;
   float share;       // m': of `mirrored`, what the reflection ray brings
   float rise;        // s: how far the lobe's albedo rises at grazing angles
   float kept;        // (1 - E(n·v)) / (1 - mean of E), for lamps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rays whose hits generate shades: the i-th of the list at work, or of the camera's where they were not written. `hit`: the
-// triangle, NO_INDEX for none, and t.
+// The rays whose hits generate shades: the i-th of the list at work, or of the camera's where they were not written.
+// `hit`: the triangle, NO_INDEX for none, and t.
 #ifndef SHEAF_PARENTS_GLSL
 #define SHEAF_PARENTS_GLSL
 #include "raster/camera.glsl"
@@ -23,7 +23,7 @@ Parent load_parent(uint i, out uvec2 hit) {
   hit = unpack32(hit_at(push.hits, slot).v);
   Parent p;
   p.ray = load_ray(push.rays, slot);
-  RayLoad carried = load_ray_load(push.rays, slot);
+  RayPayload carried = load_ray_payload(push.rays, slot);
   p.weight = carried.weight;
   p.coverage = carried.coverage;
   p.medium = carried.medium;

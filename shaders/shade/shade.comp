@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds the light of the shadow rays that got through, and counts: ray by ray, or, where there are several lights, parent by parent,
-// whose rays' light is one sum.
+// Adds the light of the shadow rays that got through, and counts: ray by ray, or, where there are several lights,
+// parent by parent, whose rays' light is one sum.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -20,10 +20,11 @@ layout(push_constant) uniform Push {
 
 // Of a ray that got through.
 vec3 light_of(uint slot) {
-  vec3 light = load_ray_load(push.rays, slot).weight;
+  vec3 light = load_ray_payload(push.rays, slot).weight;
   if (TRANSLUCENT) {
-    ivec3 stops = max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
-    light *= exp2(-vec3(stops) / float(OPTICAL_STEP));
+    ivec3 depth =
+        max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
+    light *= exp2(-vec3(depth) / float(OPTICAL_STEP));
   }
   return light;
 }

@@ -36,12 +36,14 @@ vec3 transform_normal(Instance i, vec3 v) { return vec3(dot(i.normal0, v), dot(i
 const float MAX_SPREAD = 1e3;  // of a ray's cone: past it nothing has detail left
 
 // `side`: front_sign.
-vec3 shading_normal(Instance instance, float side, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped, out vec3 vertex_normal) {
+vec3 shading_normal(Instance instance, float side, uvec3 v, vec3 b, vec3 geometric, TextureUse use, vec3 mapped,
+                    out vec3 vertex_normal) {
   bool is_dynamic = instance.dynamic != NO_INDEX;
   uvec3 d = 3u * (v + instance.dynamic);
   uvec3 s = v + instance.first_vertex;
-  vec3 n = is_dynamic ? load_dynamic(d.x + 1u) * b.x + load_dynamic(d.y + 1u) * b.y + load_dynamic(d.z + 1u) * b.z
-                      : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
+  vec3 n = is_dynamic
+               ? load_dynamic(d.x + 1u) * b.x + load_dynamic(d.y + 1u) * b.y + load_dynamic(d.z + 1u) * b.z
+               : transform_normal(instance, load_normal(s.x) * b.x + load_normal(s.y) * b.y + load_normal(s.z) * b.z);
   n = safe_normalize(n, geometric);
   vertex_normal = n;
   if (!TEXTURED_NORMALS || instance.tangent == NO_INDEX) return n;
@@ -84,7 +86,8 @@ Slopes slopes_of(vec3 e1, vec3 e2, vec3 along, vec3 across) {
   return area > 0.0 ? s : Slopes(vec2(0), vec2(0));
 }
 
-// The mean of the normal curvatures along both axes: how much the interpolated normal turns towards a step, a unit of the step.
+// The mean of the normal curvatures along both axes: how much the interpolated normal turns towards a step, a unit of
+// the step.
 float curvature_of(Instance instance, uvec3 v, vec3 b, Slopes s, vec3 along, vec3 across) {
   vec3 n0, n1, n2;
   if (instance.dynamic != NO_INDEX) {
@@ -110,14 +113,14 @@ struct Texels {
   TextureUse normal, occlusion;
 };
 
-Texels look_up_filtered(SharedLooks looks, TexturePoint p) {
+Texels look_up_filtered(SharedShadingInputs looks, TexturePoint p) {
   Texels texels;
   for (uint k = 0u; k < TEXTURES; ++k) texels.of[k] = vec4(1);
   texels.normal.flags = 0u;
   texels.occlusion.strength = 0.0;
   if (!TEXTURED) return texels;
   [[dont_unroll]] for (uint k = 0u; k < TEXTURES; ++k) {
-    TextureUse use = use_together(looks, k);
+    TextureUse use = load_use_subgroup(looks, k);
     if (k == TEXTURE_NORMAL) texels.normal = use;
     if (k == TEXTURE_OCCLUSION) texels.occlusion = use;
     if ((use.flags & TEXTURE_HERE) == 0u) continue;
@@ -130,10 +133,12 @@ Texels look_up_filtered(SharedLooks looks, TexturePoint p) {
   return texels;
 }
 
-// How far the triangle's highest corner is above the point, as the vertex normals see it: no ray from there on goes back through the
-// triangle if it goes up (SHADING.md, Shadow rays). Less than 10^-5 of the triangle's size is rounding: it is flat.
+// How far the triangle's highest corner is above the point, as the vertex normals see it: no ray from there on goes
+// back through the triangle if it goes up (SHADING.md, Shadow rays). Less than 10^-5 of the triangle's size is
+// rounding: it is flat.
 float lift_of(Surface s, vec3 v0, vec3 v1, vec3 v2) {
-  float lift = max_of(vec3(dot(v0 - s.point, s.vertex_normal), dot(v1 - s.point, s.vertex_normal), dot(v2 - s.point, s.vertex_normal)));
+  float lift = max_of(
+      vec3(dot(v0 - s.point, s.vertex_normal), dot(v1 - s.point, s.vertex_normal), dot(v2 - s.point, s.vertex_normal)));
   return lift > 1e-5 * s.reach && dot(s.vertex_normal, s.geometric) > 0.0 ? lift : 0.0;
 }
 
@@ -148,7 +153,7 @@ void set_ranks(uint word, bool clockwise, inout Surface s) {
 // All lanes are active (shading_inputs.glsl).
 Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Material material) {
   Corners corners = load_triangle(triangle);
-  SharedLooks looks = looks_together(instance_of(corners));
+  SharedShadingInputs looks = shading_inputs_subgroup(instance_of(corners));
   Instance instance = looks.looks.instance;
   material = looks.looks.material;
   uvec3 v = triangle_vertices(instance, triangle);
@@ -168,8 +173,9 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
     vec3 along, across;
     footprint_axes(g, direction, along, across);
     Slopes slopes = slopes_of(v1 - v0, v2 - v0, along, across);
-    point_uv = TexturePoint(interpolate_uv_footprint(instance.uv0, v, b, slopes.along * abs(width), slopes.across * abs(width)),
-                            interpolate_uv_footprint(instance.uv1, v, b, slopes.along * abs(width), slopes.across * abs(width)));
+    point_uv = TexturePoint(
+        interpolate_uv_footprint(instance.uv0, v, b, slopes.along * abs(width), slopes.across * abs(width)),
+        interpolate_uv_footprint(instance.uv1, v, b, slopes.along * abs(width), slopes.across * abs(width)));
     if (width != 0.0) s.curvature = curvature_of(instance, v, b, slopes, along, across);
   }
   Texels texels = look_up_filtered(looks, point_uv);
@@ -193,13 +199,16 @@ Surface surface_at(uint triangle, vec3 b, vec3 direction, float width, out Mater
   return s;
 }
 
-float next_up(float v) { return uintBitsToFloat(v < 0.0 ? floatBitsToUint(v) - 1u : v == 0.0 ? 1u : floatBitsToUint(v) + 1u); }
+float next_up(float v) {
+  return uintBitsToFloat(v < 0.0 ? floatBitsToUint(v) - 1u : v == 0.0 ? 1u : floatBitsToUint(v) + 1u);
+}
 float next_down(float v) { return -next_up(-v); }
 
-// An origin on the side of `towards` that no rounding can put behind the surface: the error box of the point is pushed out
-// along the normal and rounded away (pbrt-v3 3.9.5). The next test adds its own error: it works on corner − origin, up to
-// `span` (the larger of the triangle's reach and the ray's length) a coordinate, each rounded once when subtracted, twice
-// when sheared and twice when weighted, so a plane through the point may seem shifted by 5·2^-24·span an axis; 8 leaves room.
+// An origin on the side of `towards` that no rounding can put behind the surface: the error box of the point is pushed
+// out along the normal and rounded away (pbrt-v3 3.9.5). The next test adds its own error: it works on corner − origin,
+// up to `span` (the larger of the triangle's reach and the ray's length) a coordinate, each rounded once when
+// subtracted, twice when sheared and twice when weighted, so a plane through the point may seem shifted by 5·2^-24·span
+// an axis; 8 leaves room.
 //
 // Where other surfaces lie in the same place, theirs is the larger error: a step of ranks.
 vec3 offset_origin(Surface s, vec3 towards, float length_of_ray) {
@@ -214,8 +223,8 @@ vec3 offset_origin(Surface s, vec3 towards, float length_of_ray) {
   return o;
 }
 
-// Where a ray goes on from a surface. If others lie in the same place it starts in that place itself, half a step behind the surface of
-// that rank (seen_corners): it meets those that come after, and none of those before.
+// Where a ray goes on from a surface. If others lie in the same place it starts in that place itself, half a step
+// behind the surface of that rank (seen_corners): it meets those that come after, and none of those before.
 void start_ray(Surface s, vec3 towards, vec3 direction, uint rank, out vec3 origin, out float tmin) {
   tmin = 0.0;
   if (!RANKED || s.rank == 0u) {

@@ -62,9 +62,9 @@ def prepare(case: Case, cache: Path, depth: int) -> Scene:
 
 
 def probe(engine: Engine, scene: Scene, strategy: str, settings: Settings, load_seconds: float) -> str | None:
-    """Why a strategy is left out: its frame, foretold from a small one, would take longer than patience allows.
+    """Why a strategy is left out: its frame, predicted from a small one, would take longer than patience allows.
 
-    A strategy whose packets are few and wide in a small picture is foretold too long a frame: a larger one has the say,
+    A strategy whose packets are few and wide in a small picture is predicted too long a frame: a larger one has the say,
     while it takes no longer than a quarter of that.
     """
     width, height = PROBE_SIZE
@@ -75,12 +75,12 @@ def probe(engine: Engine, scene: Scene, strategy: str, settings: Settings, load_
         except TookTooLongError:
             return f"two frames of {size_text((width, height))} take over {2 * settings.patience:g} s"
         seconds = run.frames[0].wall / 1000
-        foretold = seconds * settings.size[0] * settings.size[1] / (width * height)
-        if foretold <= settings.patience:
+        predicted = seconds * settings.size[0] * settings.size[1] / (width * height)
+        if predicted <= settings.patience:
             return None
         larger = (2 * width, 2 * height)
         if 4 * seconds > settings.patience or larger[0] > settings.size[0] or larger[1] > settings.size[1]:
-            return f"a frame would take about {foretold:.0f} s, over {settings.patience:g} s"
+            return f"a frame would take about {predicted:.0f} s, over {settings.patience:g} s"
         width, height = larger
 
 

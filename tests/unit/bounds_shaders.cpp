@@ -84,7 +84,7 @@ Bundle bundle_over(const std::vector<Node>& rays, float widest) {
     for (int k = 0; k < 8; k += 2 * step) lanes[k] += lanes[k + step];
   s.sum = lanes[0];
   const gl::RayNode n = gl::bundle_bound(s);
-  return {{n.centre, n.radius, n.axis, n.angle, n.tmax}, gl::is_loose(n, s, widest)};
+  return {{n.centre, n.radius, n.axis, n.angle, n.tmax}, gl::is_incoherent(n, s, widest)};
 }
 
 bool meets_sphere(const Node& node, const glm::vec3& centre, float radius) {

@@ -33,7 +33,7 @@ Node node_over(const Node* below, int count);
 /// The node over a bundle, and whether it is too wide (`widest`: half-angle) to be walked as one.
 struct Bundle {
   Node node;
-  bool loose;
+  bool incoherent;
 };
 Bundle bundle_over(const std::vector<Node>& rays, float widest);
 bool meets_sphere(const Node& node, const glm::vec3& centre, float radius);

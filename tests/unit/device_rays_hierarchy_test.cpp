@@ -206,8 +206,8 @@ TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
                                           {"parallel", false}, {"cone of 0.001000", false}, {"cone of 1.000000", true}};
   for (const auto& batch : batches())
     for (const auto count : ray_counts()) {
-      const auto is_loose = loose.find(batch.name);
-      if (is_loose == loose.end()) continue;
+      const auto is_incoherent = loose.find(batch.name);
+      if (is_incoherent == loose.end()) continue;
       ListOnDevice on_device(make_rays(batch, count));
       const Output<std::uint32_t> work(blocks_of(count, bundle));
       Buffer args = buffer_of(std::vector<std::uint32_t>(std::size_t{gpu::ARGS_COUNT} * 3));
@@ -223,9 +223,9 @@ TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
       on_device.recorder().submit_and_wait();
       std::vector<std::uint32_t> expected;
       for (std::uint32_t b = 0; b < blocks_of(count, bundle); ++b)
-        if (is_loose->second || count - b * bundle < 8) expected.push_back(b);
+        if (is_incoherent->second || count - b * bundle < 8) expected.push_back(b);
       auto alone = work.values();
-      alone.resize(args.view<std::uint32_t>()[gpu::ARGS_LOOSE * 3]);
+      alone.resize(args.view<std::uint32_t>()[gpu::ARGS_INCOHERENT * 3]);
       std::sort(alone.begin(), alone.end());
       ASSERT_EQ(alone, expected) << batch.name << ", " << count << " rays";
     }

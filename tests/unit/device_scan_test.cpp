@@ -135,7 +135,7 @@ void expect_list_args(const Words& args, std::uint32_t rays) {
   set_args(expected, gpu::ARGS_RAYS, blocks_of(rays, gpu::GROUP));
   set_args(expected, gpu::ARGS_BLOCKS, blocks_of(rays));
   set_args(expected, gpu::ARGS_BUNDLES, blocks_of(rays, device().limits().bundle));
-  set_args(expected, gpu::ARGS_LOOSE, 0);
+  set_args(expected, gpu::ARGS_INCOHERENT, 0);
   set_args(expected, gpu::ARGS_ONE, std::min(rays, 1U));
   EXPECT_EQ(args, expected);
 }
@@ -153,9 +153,9 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
   list.order = buffer_of(Words(slots));
   Words counters(gpu::COUNT_WORDS), arguments(std::size_t{gpu::ARGS_COUNT} * 3);
   counters[gpu::COUNT_SLOTS + kind] = slots;
-  counters[gpu::COUNT_LOOSE] = 7;  // of the list before
+  counters[gpu::COUNT_INCOHERENT] = 7;  // of the list before
   set_args(arguments, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS, blocks_of(slots));
-  set_args(arguments, gpu::ARGS_LOOSE, 7);
+  set_args(arguments, gpu::ARGS_INCOHERENT, 7);
   std::vector<std::uint64_t> stats(gpu::STAT_SUMS);
   stats[kind * gpu::STAT_FIELDS + gpu::STAT_RAYS] = 1ULL << 40U;  // of generations before
   gpu::Frame frame{};
@@ -175,7 +175,7 @@ void check_compaction(const Compact& compact, const Words& holds_ray, std::uint3
     compact.record(recorder, list, kind);
   recorder.submit_and_wait();
   EXPECT_EQ(counter_words.view<std::uint32_t>()[gpu::COUNT_RAYS + kind], expected.size());
-  EXPECT_EQ(counter_words.view<std::uint32_t>()[gpu::COUNT_LOOSE], 0);
+  EXPECT_EQ(counter_words.view<std::uint32_t>()[gpu::COUNT_INCOHERENT], 0);
   EXPECT_EQ(read<std::uint32_t>(recorder, list.order, expected.size()), expected);
   EXPECT_EQ(stat_words.view<std::uint64_t>()[kind * gpu::STAT_FIELDS], (1ULL << 40U) + expected.size());
   expect_list_args(read<std::uint32_t>(recorder, args, std::size_t{gpu::ARGS_COUNT} * 3),

@@ -20,8 +20,8 @@ bool poses(std::uint64_t triangles, std::uint64_t distinct, InstancePolicy polic
   RenderSettings settings;
   settings.instances = policy;
   const Plan plan = make_plan(features, settings, Strategy::bvh);
-  EXPECT_EQ(plan.posed, leaves_out(plan, "triangles in world space"));
-  return plan.posed;
+  EXPECT_EQ(plan.transform_on_fetch, leaves_out(plan, "triangles in world space"));
+  return plan.transform_on_fetch;
 }
 
 TEST(Plan, SharesInstancesWhereThatSavesMuch) {

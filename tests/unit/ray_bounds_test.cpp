@@ -80,16 +80,16 @@ Real half_angle(const std::vector<shader::Node>& rays) {
   return widest;
 }
 
-TEST(Bounds, BundlesHoldTheirRaysAndWideOnesAreLoose) {
+TEST(Bounds, BundlesHoldTheirRaysAndWideOnesAreIncoherent) {
   Search search("bundle of rays (radius against the farthest origin)");
   over_decades(4000, [&](Dice& dice, int decade, Real size) {
     const auto rays = random_rays(dice, size, 1 + static_cast<std::size_t>(dice.range(0, 64)));
-    const auto [node, loose] = shader::bundle_over(rays, 0.1F);
+    const auto [node, incoherent] = shader::bundle_over(rays, 0.1F);
     search.add(decade, holds_rays(node, rays, 0, rays.size()));
     if (const Real angle = half_angle(rays); angle > 0.1L) {
-      EXPECT_TRUE(loose);
+      EXPECT_TRUE(incoherent);
     } else if (angle < 0.01L) {
-      EXPECT_FALSE(loose);
+      EXPECT_FALSE(incoherent);
     }
     Real farthest = 0;
     for (const auto& ray : rays) farthest = std::max(farthest, glm::length(Vec(ray.centre) - Vec(node.centre)));
@@ -111,20 +111,20 @@ TEST(Bounds, BundlesOfOneDirectionAndOfAllAreBounded) {
     const auto equal = bundle_of(count, [&](auto& ray, int) { ray.centre = {1, 2, 3}, ray.axis = axis; });
     EXPECT_EQ(equal.node.radius, 0);
     EXPECT_LT(equal.node.angle, 2e-6F);
-    EXPECT_FALSE(equal.loose);
+    EXPECT_FALSE(equal.incoherent);
     const auto ulps = bundle_of(count, [&](auto& ray, int i) {
       ray.centre = {i % 2 == 0 ? 1e7F : std::nextafter(1e7F, 1e9F), 1, 1e-7F};
       ray.axis = axis;
       if (i % 2 == 1) ray.axis.x = std::nextafter(axis.x, 2.0F);
     });
-    EXPECT_FALSE(ulps.loose);
+    EXPECT_FALSE(ulps.incoherent);
     if (count < 2) continue;
-    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis = i % 2 == 0 ? axis : -axis; }).loose);
-    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis[i % 3] = i % 6 < 3 ? 1.0F : -1.0F; }).loose);
+    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis = i % 2 == 0 ? axis : -axis; }).incoherent);
+    EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) { ray.axis[i % 3] = i % 6 < 3 ? 1.0F : -1.0F; }).incoherent);
     // Within the widest, but to both sides of an axis: no slab bounds it.
     EXPECT_TRUE(bundle_of(count, [&](auto& ray, int i) {
                   ray.axis = unit_float({i % 2 == 0 ? 0.05L : -0.05L, 0, 1});
-                }).loose);
+                }).incoherent);
   }
 }
 

@@ -36,7 +36,7 @@ void main() {
       shade.t = best.t;
     }
     if (ANY_HIT && TRANSLUCENT)
-      for (uint c = 0u; c < 3u; ++c) shade.stops[c] = optical_depth[3u * slot + c];
+      for (uint c = 0u; c < 3u; ++c) shade.optical_depth[c] = optical_depth[3u * slot + c];
   }
   Pending pending = NOTHING_PENDING;
   uint tests = 0u;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The leaves of a node that a bundle enters, tested together: which vectors enter each, then the vectors, one after the other, each with
-// all the leaves it enters, since to take up a vector's rays costs as much as to test a leaf.
+// The leaves of a node that a bundle enters, tested together: which vectors enter each, then the vectors, one after the
+// other, each with all the leaves it enters, since to take up a vector's rays costs as much as to test a leaf.
 #ifndef SHEAF_BUNDLE_LEAVES_GLSL
 #define SHEAF_BUNDLE_LEAVES_GLSL
 struct Leaf {
@@ -14,8 +14,9 @@ uint own_leaves;              // lane v: those that vector v enters
 uint todo = 0u;               // vectors that enter some
 uint leaves_left = 0u;        // of the first of them, where there was no room for more
 
-// Leaves that few rays of a vector enter wait here, and each lane tests its own: were they tested for the vector at once, most lanes
-// would look on. Where triangles are as small as the distance between rays, that is one lane in eight at work.
+// Leaves that few rays of a vector enter wait here, and each lane tests its own: were they tested for the vector at
+// once, most lanes would look on. Where triangles are as small as the distance between rays, that is one lane in eight
+// at work.
 uint h_vector[HELD_LEAVES], h_leaf[HELD_LEAVES];
 
 // A vector's test loads a triangle once, a lane's own gathers it and what belongs to its ray: about three lanes' worth.
@@ -35,8 +36,8 @@ void test_held() {
   Work w = load_work(has ? h_vector[held] : VECTORS);
   uint triangle = leaf_first(leaf), last = has ? triangle + leaf_count(leaf) : triangle;
   while (any_lane(triangle < last)) {
-    bool there = triangle < last;
-    test_corners(load_triangle(there ? triangle : 0u), triangle, there, w);
+    bool is_active = triangle < last;
+    test_corners(load_triangle(is_active ? triangle : 0u), triangle, is_active, w);
     ++triangle;
   }
   put_found(w);
@@ -93,7 +94,7 @@ void test_vector() {
       tested = true;
       most_queued += leaf_count(leaf);
       for (uint triangle = leaf_first(leaf), last = triangle + leaf_count(leaf); triangle < last; ++triangle)
-        test_corners(load_triangle_together(triangle), triangle, enters, w);
+        test_corners(load_triangle_subgroup(triangle), triangle, enters, w);
     }
     room = waiting_has_room();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hits of a lane's rays that a material may take back wait here: asking materials takes long, and what one lane needs all lanes
-// run, so it is done for many at once.
+// Hits of a lane's rays that a material may take back wait here: asking materials takes long, and what one lane needs
+// all lanes run, so it is done for many at once.
 #ifndef SHEAF_BUNDLE_QUEUE_GLSL
 #define SHEAF_BUNDLE_QUEUE_GLSL
 const uint QUEUE = LEAF_TRIANGLES * (2u * HELD_LEAVES);
@@ -15,8 +15,8 @@ bool is_room(uint holding, uint queueing) {
   return holding < HELD_LEAVES && (!asks_materials() || queueing + LEAF_TRIANGLES * (holding + 1u) <= QUEUE);
 }
 
-// For what one more leaf of one vector may add: itself, or hits; what waits are hits to be. Lanes are asked where what they may
-// have does not tell.
+// For what one more leaf of one vector may add: itself, or hits; what waits are hits to be. Lanes are asked where what
+// they may have does not tell.
 bool waiting_has_room() {
   if (is_room(most_held, most_queued)) return true;
   most_held = to_uint(max_lanes(float(held)));
@@ -39,7 +39,7 @@ void settle_one(uint v, uint triangle, float t) {
   if (ANY_HIT) {
     ivec3 passed = ivec3(0);
     if (crossing(triangle, h.barycentric, ray.direction, t, ray.tmax, passed)) {
-      r_stops[v] += passed;
+      r_optical_depth[v] += passed;
     } else {
       r_triangle[v] = triangle;
       r_end[v] = t;

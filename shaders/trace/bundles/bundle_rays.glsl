@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rays that a subgroup carries through a scene together, up to VECTORS vectors of LANES rays each. At a leaf the lanes are first
-// vectors (a bound of each against the leaf's box), then the rays of the vectors that enter. Nodes and triangles are loaded once
-// for all rays, a pair of words a lane.
+// Rays that a subgroup carries through a scene together, up to VECTORS vectors of LANES rays each. At a leaf the lanes
+// are first vectors (a bound of each against the leaf's box), then the rays of the vectors that enter. Nodes and
+// triangles are loaded once for all rays, a pair of words a lane.
 #ifndef SHEAF_BUNDLE_RAYS_GLSL
 #define SHEAF_BUNDLE_RAYS_GLSL
 layout(constant_id = SPEC_LANES) const uint LANES = 8;    // of a subgroup, which is the workgroup
@@ -11,10 +11,11 @@ layout(constant_id = SPEC_VECTORS) const uint VECTORS = 8;
 
 // A lane's ray of each vector.
 vec3 r_origin[VECTORS], r_inverse[VECTORS], r_shear[VECTORS];
-float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];  // r_t: nearest so far, −∞ once there is nothing more to find; r_end: far
+// R_t: nearest so far, −∞ once there is nothing more to find; r_end: far.
+float r_tmin[VECTORS], r_t[VECTORS], r_end[VECTORS];
                                                       // limit of a shadow ray, or t where it is blocked
 uint r_axis[VECTORS], r_slot[VECTORS], r_triangle[VECTORS];
-ivec3 r_stops[VECTORS];
+ivec3 r_optical_depth[VECTORS];
 Beam vector_beam;                                     // lane v: of vector v
 Spread spread;                                        // of the bundle
 uint lane, ray_count, first_ray;
@@ -29,13 +30,14 @@ uint held = 0u;                                       // leaves that wait, of th
 #include "scene/load_uniform.glsl"
 
 Extent extent_of(Extent mine) {
-  return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi), min_lanes(mine.tmin));
+  return Extent(min_lanes(mine.olo), max_lanes(mine.ohi), min_lanes(mine.ilo), max_lanes(mine.ihi),
+                min_lanes(mine.tmin));
 }
 
 Beam load_bundle() {
   [[unroll]] for (uint v = 0u; v < VECTORS; ++v) {
     r_triangle[v] = NO_INDEX;
-    r_stops[v] = ivec3(0);
+    r_optical_depth[v] = ivec3(0);
     r_t[v] = -INFINITY;
   }
   vectors = (ray_count + LANES - 1u) / LANES;
@@ -45,7 +47,8 @@ Beam load_bundle() {
   float tmax = 0.0;
   [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) {
     uint k = v * LANES + lane;
-    uint slot = load_slot(push.order, first_ray + min(k, ray_count - 1u));  // the last one fills the rest; its extra lanes find nothing
+    // The last one fills the rest; its extra lanes find nothing.
+    uint slot = load_slot(push.order, first_ray + min(k, ray_count - 1u));
     Ray ray = load_ray(push.rays, slot);
     Shear s = make_shear(ray.origin, ray.direction);
     float limit = k < ray_count ? ray.tmax : -INFINITY;
@@ -64,7 +67,8 @@ Beam load_bundle() {
     Extent e = extent_of(Extent(s.origin, s.origin, s.inverse, s.inverse, ray.tmin));
     float far = max_lanes(limit);
     if (VECTORS > LANES) {  // then vector_beam is not used
-      own = Extent(min(own.olo, e.olo), max(own.ohi, e.ohi), min(own.ilo, e.ilo), max(own.ihi, e.ihi), min(own.tmin, e.tmin));
+      own = Extent(min(own.olo, e.olo), max(own.ohi, e.ohi), min(own.ilo, e.ilo), max(own.ihi, e.ihi),
+                   min(own.tmin, e.tmin));
       own_far = max(own_far, far);
     } else if (lane == v) {
       own = e;
@@ -157,7 +161,7 @@ void store(uint v) {
   hit_at(push.hits, slot).v = triangle == NO_INDEX ? NO_HIT : pack_hit(t, triangle);
   if (ANY_HIT && TRANSLUCENT) {
     ivec3 sum;
-    PICK(sum, r_stops, v);
+    PICK(sum, r_optical_depth, v);
     for (uint c = 0u; c < 3u; ++c) optical_depth[3u * slot + c] = sum[c];
   }
   if (PIXEL_COUNTED)

@@ -3,9 +3,9 @@
 #ifndef SHEAF_INCOHERENT_GLSL
 #define SHEAF_INCOHERENT_GLSL
 
-void goes_alone(uint bundle) {
-  uint before = atomicAdd(counters[COUNT_LOOSE], 1u);
+void fall_back_to_single_rays(uint bundle) {
+  uint before = atomicAdd(counters[COUNT_INCOHERENT], 1u);
   work[before] = bundle;
-  raise_args(ARGS_LOOSE, before + 1u);
+  raise_args(ARGS_INCOHERENT, before + 1u);
 }
 #endif

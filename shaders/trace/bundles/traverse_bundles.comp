@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `hybrid`: one subgroup bounds a bundle of rays (bundle_rays.glsl) and walks the object hierarchy with it.
-// Lanes are a node's children when boxes are tested. Bundles that are too wide to be walked as one, and those that turn out to be, go to
-// a list.
+// Traverse and intersect for `hybrid`: one subgroup bounds a bundle of rays (bundle_rays.glsl) and walks the object
+// hierarchy with it. Lanes are a node's children when boxes are tested. Bundles that are too wide to be walked as one,
+// and those that turn out to be, go to a list.
 //
 // Exact: see beam.glsl; the cone test is padded. Control flow as in single_ray.glsl.
 #define COMPUTE
@@ -22,7 +22,7 @@ BUFFER(ROLE_WORK, writeonly, uint, work);
 layout(push_constant) uniform Push {
   uint kind;
   uint most_effort;
-  float widest;  // half-angle past which a bundle is loose
+  float widest;  // half-angle past which a bundle is incoherent
   PUSH_LIST
 } push;
 
@@ -34,7 +34,7 @@ Visit visit;  // the same in all lanes
 
 // Children that some ray of the bundle may enter, a bit each; their boxes stay with the lanes.
 uint entered_children(Beam beam, Cone cone, uint node) {
-  Boxes boxes = load_boxes_together(node);
+  Boxes boxes = load_boxes_subgroup(node);
   uint entered = 0u;
   for (uint base = 0u; base < WIDE; base += LANES) {
     uint c = base + lane;
@@ -44,9 +44,10 @@ uint entered_children(Beam beam, Cone cone, uint node) {
       lower_leaf = Leaf(lo, hi, 0u);
     else
       upper_leaf = Leaf(lo, hi, 0u);
-    bool there = c < WIDE && (boxes.grid.there & (1u << c)) != 0u;
-    if (there) ++node_tests;
-    bool enters = there && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
+    bool is_active = c < WIDE && (boxes.grid.present & (1u << c)) != 0u;
+    if (is_active) ++node_tests;
+    bool enters =
+        is_active && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
     entered |= lanes_where(enters, WIDE) << base;
   }
   return entered & 255u;
@@ -57,7 +58,7 @@ void visit_node(Beam beam, Cone cone, uint node) {
   if (entered == 0u) return;
   hold_children(node);
   uint entered_leaves = entered & leaf_children();
-  visit_together(visit, node, entered & ~entered_leaves);
+  visit_children_subgroup(visit, node, entered & ~entered_leaves);
   if (entered_leaves == 0u) return;
   lower_leaf.word = children.x;
   upper_leaf.word = children.y;
@@ -71,7 +72,7 @@ bool walk(Beam beam, Cone cone) {
     while (todo == 0u && current != CHILD_EMPTY) {
       if (++effort > push.most_effort) return false;
       visit_node(beam, cone, current);
-      current = next_together(visit);
+      current = next_child_subgroup(visit);
     }
     while (todo != 0u && waiting_has_room()) test_vector();
     if (todo != 0u || current == CHILD_EMPTY) settle_waiting();
@@ -92,12 +93,12 @@ void main() {
   ray_count = min(BUNDLE_RAYS, rays_here - first_ray);
   Beam beam = load_bundle();
   RayNode node = bundle_bound(spread);
-  bool loose = ray_count < 8u || is_loose(node, spread, push.widest);
+  bool incoherent = ray_count < 8u || is_incoherent(node, spread, push.widest);
   visit = Visit(0u, 0u, octant_of(node.axis));
-  if (!loose && walk(beam, cone_of(node))) {
+  if (!incoherent && walk(beam, cone_of(node))) {
     [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
   } else if (lane == 0u) {
-    goes_alone(bundle);  // what it found is found again
+    fall_back_to_single_rays(bundle);  // what it found is found again
   }
   count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
   count_tests(push.kind, STAT_LEVELS + 3u, node_tests);

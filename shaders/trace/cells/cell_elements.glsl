@@ -30,9 +30,9 @@ void scan_total(uint total) {
   packets[total] = uvec2(scan_count(), total);
 }
 #elif defined(SCAN_OPEN)
-// Children that pairs (cell, node) entered → the pairs of the next level, cell by cell as before, a node's children in visiting
-// order; so in the end every cell's leaves stand roughly front to back. What has no room is not written: the walk stops there,
-// says so, and the host repeats it with fewer cells.
+// Children that pairs (cell, node) entered → the pairs of the next level, cell by cell as before, a node's children in
+// visiting order; so in the end every cell's leaves stand roughly front to back. What has no room is not written: the
+// walk stops there, says so, and the host repeats it with fewer cells.
 #include "scene/memory.glsl"
 #include "lib/convert.glsl"
 BUFFER(ROLE_PAIRS, coherent, uvec2, pairs);
@@ -61,12 +61,12 @@ void scan_store(uint i, uint before, uint own) {
 void scan_total(uint total) {
   uint count = scan_count();
   bool opens = counters[COUNT_OPEN] != 0u || push.always != 0u, fits = total <= push.room;
-  bool goes_on = opens && fits;
+  bool continues = opens && fits;
   counters[COUNT_OPEN] = 0u;
-  set_args(ARGS_PAIR_SCATTER, goes_on ? groups_of(count, SCAN_BLOCK) : 0u);
-  set_args(ARGS_PAIRS, goes_on ? groups_of(total, GROUP) : 0u);
-  set_args(ARGS_PAIR_BLOCKS, goes_on ? groups_of(total, SCAN_BLOCK) : 0u);
-  if (goes_on) {
+  set_args(ARGS_PAIR_SCATTER, continues ? groups_of(count, SCAN_BLOCK) : 0u);
+  set_args(ARGS_PAIRS, continues ? groups_of(total, GROUP) : 0u);
+  set_args(ARGS_PAIR_BLOCKS, continues ? groups_of(total, SCAN_BLOCK) : 0u);
+  if (continues) {
     counters[COUNT_PAIR_HALF] = 1u - push.half_read;
     counters[COUNT_PAIR_HALVES + 1u - push.half_read] = total;
     set_args(ARGS_PAIR_RANGES, groups_of(total, GROUP));
@@ -75,8 +75,8 @@ void scan_total(uint total) {
   }
 }
 #elif defined(SCAN_DIVIDE)
-// Rays in the order of their classes → the cells of the next five halvings, only where there are rays. A cell that stops stays
-// whole.
+// Rays in the order of their classes → the cells of the next five halvings, only where there are rays. A cell that
+// stops stays whole.
 BUFFER(ROLE_CELL_CUTS, readonly, uint, cuts);
 BUFFER(ROLE_RAY_CELLS, coherent, uint, ray_cells);
 BUFFER(ROLE_CELLS, readonly, uvec2, cells);            // above: first ray, cell above that
@@ -93,7 +93,9 @@ uint scan_load(uint i) {
   uint ray = counters[COUNT_WALK_RAY] + i, above = cell_above(ray);
   if (cells[above].x == ray) return 1u;
   uint cut = cuts[ray], state = cell_stops[above];
-  return state != CELL_STOPS && (cut & (CUT_SMALL - 1u)) <= push.halvings && (cut < CUT_SMALL || state == CELL_CROWDED) ? 1u : 0u;
+  return state != CELL_STOPS && (cut & (CUT_SMALL - 1u)) <= push.halvings && (cut < CUT_SMALL || state == CELL_CROWDED)
+             ? 1u
+             : 0u;
 }
 void scan_store(uint i, uint before, uint own) {
   uint ray = counters[COUNT_WALK_RAY] + i, above = cell_above(ray);

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// A packet's frustum (S, R 3.4): its rays share a dominant axis z and the way they go along it; two rectangles across z, one
-// where the first ray begins and one where the last can end, hold the places at which the rays' lines cross these planes.
-// Between the planes a line's place is a mean of its two places, so it lies within the same mean of the rectangles: also where
-// rays meet (shadow rays turned round: the near rectangle is their light) or part.
+// A packet's frustum (S, R 3.4): its rays share a dominant axis z and the way they go along it; two rectangles across
+// z, one where the first ray begins and one where the last can end, hold the places at which the rays' lines cross
+// these planes. Between the planes a line's place is a mean of its two places, so it lies within the same mean of the
+// rectangles: also where rays meet (shadow rays turned round: the near rectangle is their light) or part.
 //
-// Padding. u = 2^-24, M the greatest coordinate of origins and scene. What must not be culled is a box of which some ray of the
-// packet passes the slab test (triangle.glsl) at a t within its limits; the corresponding real point of the ray's line is within
-//   e = 6.1 uM of the box: plane − origin, its product with the reciprocal and the reciprocal are rounded, |plane − origin| ≤ 2M.
-// Against it stand, in uM: a place on a plane is rounded 4 times at up to 3M (9), the padded rectangle once (3); the box's plane
-// along z may be e off, and slopes are at most 1 (6.1); so may the quotient for z, rounded 3 times at up to 4M (12); quotients for
-// the rectangles' sides are rounded 4 times, of differences of up to 4M (16.4); sides moved from parallel to z by 2^-30 M (0.1).
-// With e itself 52.7 uM; FRUSTUM_PAD is 64 u. The planes are moved out by as much, which covers e, limits rounded (2) and the
-// quotient for z.
+// Padding. u = 2^-24, M the greatest coordinate of origins and scene. What must not be culled is a box of which some
+// ray of the packet passes the slab test (triangle.glsl) at a t within its limits; the corresponding real point of the
+// ray's line is within
+//   e = 6.1 uM of the box: plane − origin, its product with the reciprocal and the reciprocal are rounded,
+//   |plane − origin| ≤ 2M.
+// Against it stand, in uM: a place on a plane is rounded 4 times at up to 3M (9), the padded rectangle once (3); the
+// box's plane along z may be e off, and slopes are at most 1 (6.1); so may the quotient for z, rounded 3 times at up to
+// 4M (12); quotients for the rectangles' sides are rounded 4 times, of differences of up to 4M (16.4); sides moved from
+// parallel to z by 2^-30 M (0.1). With e itself 52.7 uM; FRUSTUM_PAD is 64 u. The planes are moved out by as much,
+// which covers e, limits rounded (2) and the quotient for z.
 #ifndef SHEAF_FRUSTUM_GLSL
 #define SHEAF_FRUSTUM_GLSL
 
@@ -38,7 +40,8 @@ uint face_of(vec3 d) {  // dominant axis and sign: six of them
 bool frustum_enters(Frustum f, vec3 lo, vec3 hi) {
   float low = (lo.z - f.plane) * f.inverse, high = (hi.z - f.plane) * f.inverse;
   float first = max(min(low, high), 0.0), last = min(max(low, high), 1.0);
-  // The lower side of u is below hi.x, its upper side above lo.x; likewise v. Each bounds the way s from plane to plane.
+  // The lower side of u is below hi.x, its upper side above lo.x; likewise v. Each bounds the way s from plane to
+  // plane.
   vec4 s = (vec4(hi.x, lo.x, hi.y, lo.y) - f.side) * f.reciprocal;
   bvec4 moves_out = greaterThan(f.reciprocal, vec4(0));  // the side grows with s
   last = min(last, min(moves_out.x ? s.x : INFINITY, moves_out.y ? INFINITY : s.y));
@@ -73,7 +76,8 @@ Hull begin_hull(vec3 direction, vec3 lo, vec3 hi) {
   return h;
 }
 
-// First every ray's extent, then the planes, then every ray's places on them. Comparisons leave out what is not a number.
+// First every ray's extent, then the planes, then every ray's places on them. Comparisons leave out what is not a
+// number.
 void add_extent(inout Hull h, vec3 origin, vec3 direction, float tmin, float tmax) {
   float z = permute(origin, h.axis).z, d = permute(direction, h.axis).z;
   float begin = h.sign * (z + tmin * d), end = h.sign * (z + tmax * d);
@@ -86,7 +90,8 @@ void add_extent(inout Hull h, vec3 origin, vec3 direction, float tmin, float tma
 
 // No hit lies outside the scene.
 void set_planes(inout Hull h) {
-  float lowest = h.sign > 0.0 ? h.lo.z : -h.hi.z, highest = h.sign > 0.0 ? h.hi.z : -h.lo.z, pad = FRUSTUM_PAD * h.largest;
+  float lowest = h.sign > 0.0 ? h.lo.z : -h.hi.z, highest = h.sign > 0.0 ? h.hi.z : -h.lo.z,
+        pad = FRUSTUM_PAD * h.largest;
   h.first = clamp(h.first, lowest, highest);
   h.last = clamp(h.last, h.first, highest);
   h.first = h.sign * (h.first - pad);
@@ -98,7 +103,8 @@ void add_places(inout Hull h, vec3 origin, vec3 direction) {
   vec2 slope = d.xy / d.z, near = o.xy + (h.first - o.z) * slope, far = o.xy + (h.last - o.z) * slope;
   vec4 on_near = near.xxyy, on_far = far.xxyy;
   bvec4 upper = bvec4(false, true, false, true);
-  h.near = mix(mix(h.near, on_near, lessThan(on_near, h.near)), mix(h.near, on_near, greaterThan(on_near, h.near)), upper);
+  h.near =
+      mix(mix(h.near, on_near, lessThan(on_near, h.near)), mix(h.near, on_near, greaterThan(on_near, h.near)), upper);
   h.far = mix(mix(h.far, on_far, lessThan(on_far, h.far)), mix(h.far, on_far, greaterThan(on_far, h.far)), upper);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frustums by address, a pair of words at a time (see memory.glsl): plane, inverse, (axis, octant, endless, settled), nothing, side, reciprocal.
+// Frustums by address, a pair of words at a time (see memory.glsl): plane, inverse, (axis, octant, endless, settled),
+// nothing, side, reciprocal.
 #ifndef SHEAF_FRUSTUM_MEMORY_GLSL
 #define SHEAF_FRUSTUM_MEMORY_GLSL
 #include "trace/cells/frustum.glsl"
@@ -9,8 +10,8 @@ FrustumPairs frustum_pairs(uvec2 at, uint i) { return FrustumPairs(pack64(at) + 
 
 Frustum load_frustum(uvec2 at, uint i) {
   FrustumPairs words = frustum_pairs(at, i);
-  uvec2 w0 = unpack32(words.pair[0]), w1 = unpack32(words.pair[1]), w2 = unpack32(words.pair[2]), w3 = unpack32(words.pair[3]),
-        w4 = unpack32(words.pair[4]), w5 = unpack32(words.pair[5]);
+  uvec2 w0 = unpack32(words.pair[0]), w1 = unpack32(words.pair[1]), w2 = unpack32(words.pair[2]),
+        w3 = unpack32(words.pair[3]), w4 = unpack32(words.pair[4]), w5 = unpack32(words.pair[5]);
   return Frustum(uintBitsToFloat(w0.x), uintBitsToFloat(w0.y), w1.x & 3u, (w1.x >> 2) & 7u, (w1.x & 32u) != 0u,
                  (w1.x & 64u) != 0u, uintBitsToFloat(uvec4(w2, w3)), uintBitsToFloat(uvec4(w4, w5)));
 }

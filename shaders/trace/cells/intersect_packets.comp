@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Local intersection tests (S, R 3.4): one subgroup takes a packet's rays through the leaves listed for its cell, roughly front to
-// back. Lanes are leaves first: each is tested against what the packet's rays have left to find, so that what lies behind all
-// their hits costs no more than that.
+// Local intersection tests (S, R 3.4): one subgroup takes a packet's rays through the leaves listed for its cell,
+// roughly front to back. Lanes are leaves first: each is tested against what the packet's rays have left to find, so
+// that what lies behind all their hits costs no more than that.
 //
 // Exact: a leaf is left out by the slabs of beam.glsl alone.
 #define COMPUTE
@@ -35,8 +35,9 @@ void place_box(uint place, out vec3 lo, out vec3 hi) {
   NodePairs words = node_pairs(place / WIDE);
   uint c = place % WIDE;
   Grid grid = unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1]));
-  child_box(Boxes(grid, unpack32(words.pair[2]), unpack32(words.pair[3]), unpack32(words.pair[4]), unpack32(words.pair[5]),
-                  unpack32(words.pair[6]), unpack32(words.pair[7])), c, lo, hi);
+  child_box(Boxes(grid, unpack32(words.pair[2]), unpack32(words.pair[3]), unpack32(words.pair[4]),
+                  unpack32(words.pair[5]), unpack32(words.pair[6]), unpack32(words.pair[7])),
+            c, lo, hi);
 }
 
 uint place_child(uint place) {
@@ -51,9 +52,9 @@ void test_list(Beam beam, uvec2 list) {
     vec3 lo, hi;
     place_box(place, lo, hi);
     lower_leaf = Leaf(lo, hi, place_child(place));
-    bool there = lane < LEAVES && mine < list.y;
-    if (there) ++node_tests;
-    uint entered = lanes_where(there && beam_enters(beam, lo, hi));
+    bool is_active = lane < LEAVES && mine < list.y;
+    if (is_active) ++node_tests;
+    uint entered = lanes_where(is_active && beam_enters(beam, lo, hi));
     if (entered == 0u) continue;
     hand_out_leaves(entered, 0u);
     while (todo != 0u) {

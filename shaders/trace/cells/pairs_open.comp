@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One level of the breadth-first walk (S, R 3.4): of every pair's node, the children that the pair's cell may enter. Pairs with a
-// leaf stay as they are, or, where cells have become smaller since (`classify`), are tested once more. What is entered is marked,
-// a bit a child; a scan makes the next level's pairs of it.
+// One level of the breadth-first walk (S, R 3.4): of every pair's node, the children that the pair's cell may enter.
+// Pairs with a leaf stay as they are, or, where cells have become smaller since (`classify`), are tested once more.
+// What is entered is marked, a bit a child; a scan makes the next level's pairs of it.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_KHR_shader_subgroup_vote : require
@@ -30,7 +30,7 @@ layout(push_constant) uniform Push {
 // Axes of the boxes in the frustum's order: once a node is cheaper than once a child.
 Boxes permute_boxes(Boxes b, uint axis) {
   Boxes p;
-  p.grid = Grid(permute(b.grid.origin, axis), permute(b.grid.step, axis), b.grid.there);
+  p.grid = Grid(permute(b.grid.origin, axis), permute(b.grid.step, axis), b.grid.present);
   p.lx = axis == 0u ? b.ly : axis == 1u ? b.lz : b.lx;
   p.ly = axis == 0u ? b.lz : axis == 1u ? b.lx : b.ly;
   p.lz = axis == 0u ? b.lx : axis == 1u ? b.ly : b.lz;
@@ -48,19 +48,19 @@ uint entered_children(Frustum f, uint node) {
     child_box(boxes, c, lo, hi);
     mask |= frustum_enters(f, lo, hi) ? 1u << c : 0u;
   }
-  return mask & boxes.grid.there;
+  return mask & boxes.grid.present;
 }
 
 void main() {
   uint i = global_index();
-  bool there = i < counters[COUNT_PAIR_HALVES + push.half_read];
-  uvec2 pair = there ? pairs[push.half_read * push.room + i] : uvec2(0u, CHILD_LEAF);
+  bool is_active = i < counters[COUNT_PAIR_HALVES + push.half_read];
+  uvec2 pair = is_active ? pairs[push.half_read * push.room + i] : uvec2(0u, CHILD_LEAF);
   uint mask = PAIR_KEPT, tests = 0u;
   if (is_node(pair.y)) {
     Frustum f = load_frustum(push.frustums, pair.x);
     mask = in_visiting_order(entered_children(f, pair.y), f.octant) | (f.octant << PAIR_OCTANT);
-    tests = bitCount(unpack_grid(uvec2(0), unpack32(node_pairs(pair.y).pair[1])).there);
-  } else if (there && push.leaves != 0u) {
+    tests = bitCount(unpack_grid(uvec2(0), unpack32(node_pairs(pair.y).pair[1])).present);
+  } else if (is_active && push.leaves != 0u) {
     uint place = pair.y & ~CHILD_LEAF;
     Frustum f = load_frustum(push.frustums, pair.x);
     if (!f.settled) {
@@ -68,7 +68,7 @@ void main() {
       tests = 1u;
     }
   }
-  if (there) entered[i] = mask;
+  if (is_active) entered[i] = mask;
   if (is_node(pair.y)) counters[COUNT_OPEN] = 1u;
   uint sum = subgroupAdd(tests);
   if (subgroupElect() && sum != 0u) atomicAdd(pair_levels[push.level], sum);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Ray space in five dimensions (Arvo, Kirk 1987, R 3.1): x y z of the origin, u v of the direction on the face of the cube that
-// it goes through, one such space a face. A ray's class is found by halving: which axis is halved depends on the cell alone
-// (Simiakakis, Day 1994, R 3.2: adaptively), so that the sides taken make a key whose leading bits name the cells above.
+// Ray space in five dimensions (Arvo, Kirk 1987, R 3.1): x y z of the origin, u v of the direction on the face of the
+// cube that it goes through, one such space a face. A ray's class is found by halving: which axis is halved depends on
+// the cell alone (Simiakakis, Day 1994, R 3.2: adaptively), so that the sides taken make a key whose leading bits name
+// the cells above.
 #ifndef SHEAF_CLASSIFY_GLSL
 #define SHEAF_CLASSIFY_GLSL
 #include "scene/triangle.glsl"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A walk of some rays, sorted by class, begins: one cell holds them all, the root of the object hierarchy is its candidate.
+// A walk of some rays, sorted by class, begins: one cell holds them all, the root of the object hierarchy is its
+// candidate.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounding volumes of R 3.1, of the rays there are: their least and greatest places along the five axes, a face each. A subgroup
-// takes the faces of its rays one after the other (most have but one), and asks for the atomics only where a bound moves.
+// Bounding volumes of R 3.1, of the rays there are: their least and greatest places along the five axes, a face each. A
+// subgroup takes the faces of its rays one after the other (most have but one), and asks for the atomics only where a
+// bound moves.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_EXT_control_flow_attributes : require

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Candidate sets are made anew (R 3.1): every new cell takes over the candidates of the cell above, one workgroup a cell; the
-// next level of the walk tests them against its own beam.
+// Candidate sets are made anew (R 3.1): every new cell takes over the candidates of the cell above, one workgroup a
+// cell; the next level of the walk tests them against its own beam.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Subdivision (R 3.1, 3.2): where in the order of keys cells begin, and at which halving. Neighbours are parted by the first halving
-// at which their keys differ. Where the cell that it halves has no more than CLASS_RAYS rays the cut is marked: such a cell stays whole, and
-// so do all below it, while its candidates are few. Faces are always parted.
+// Subdivision (R 3.1, 3.2): where in the order of keys cells begin, and at which halving. Neighbours are parted by the
+// first halving at which their keys differ. Where the cell that it halves has no more than CLASS_RAYS rays the cut is
+// marked: such a cell stays whole, and so do all below it, while its candidates are few. Faces are always parted.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -15,7 +15,8 @@ layout(push_constant) uniform Push { uint kind; } push;
 const uint CLASS_RAYS = 64u;  // a power of two
 const uint NEVER = CLASS_HALVINGS + 1u;
 
-// Rays in the order from i on (forward), or before i, that share its key without the lowest bits; counted to 2 CLASS_RAYS − 1.
+// Rays in the order from i on (forward), or before i, that share its key without the lowest bits; counted to 2
+// CLASS_RAYS − 1.
 uint reach(uint i, uint count, uint shared_key, uint bits, bool forward) {
   uint found = 0u;
   for (uint more = CLASS_RAYS; more > 0u; more >>= 1) {
@@ -33,7 +34,8 @@ void main() {
   if (parted != 0u) {
     uint bits = uint(findMSB(parted)) + 1u, shared_key = key >> bits;
     cut = bits > CLASS_HALVINGS ? 0u : CLASS_HALVINGS + 1u - bits;
-    if (cut != 0u && reach(i, count, shared_key, bits, true) + reach(i, count, shared_key, bits, false) <= CLASS_RAYS) cut |= CUT_SMALL;
+    if (cut != 0u && reach(i, count, shared_key, bits, true) + reach(i, count, shared_key, bits, false) <= CLASS_RAYS)
+      cut |= CUT_SMALL;
   }
   cuts[i] = cut;
 }

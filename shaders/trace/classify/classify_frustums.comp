@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The beams of cells: the frustums of the rays that are in them, one subgroup a cell. Tighter than the cells' own beams, and like
-// them a bound of every ray; a cell's rays have one face. A cell that was not divided keeps the one it had.
+// The beams of cells: the frustums of the rays that are in them, one subgroup a cell. Tighter than the cells' own
+// beams, and like them a bound of every ray; a cell's rays have one face. A cell that was not divided keeps the one it
+// had.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Ray classification (R 3.1): face, then CLASS_HALVINGS times the half of the cell that the ray is in. Halved is the axis along
-// which the cell's beam is widest: by the origins' extent, or by the directions' at the far end of the scene. Depth of the
-// origins, along the beam, counts a quarter: it only moves where on their lines the rays begin.
+// Ray classification (R 3.1): face, then CLASS_HALVINGS times the half of the cell that the ray is in. Halved is the
+// axis along which the cell's beam is widest: by the origins' extent, or by the directions' at the far end of the
+// scene. Depth of the origins, along the beam, counts a quarter: it only moves where on their lines the rays begin.
 //
-// Before the sort keys go to slots, and again after it (`sorted`) they are read from there, which costs less than halving anew.
+// Before the sort keys go to slots, and again after it (`sorted`) they are read from there, which costs less than
+// halving anew.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_EXT_control_flow_attributes : require

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Which cells are not divided, however many rays they have: those whose candidates are but a few leaves. And which are, however few: those
-// with more candidates than rays that keep together have (R 3.2: by candidates as well as by rays).
+// Which cells are not divided, however many rays they have: those whose candidates are but a few leaves. And which are,
+// however few: those with more candidates than rays that keep together have (R 3.2: by candidates as well as by rays).
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

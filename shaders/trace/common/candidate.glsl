@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What becomes of a triangle that a ray was found to cross: the nearest counts (ties: the lower triangle), or, for shadow
-// rays, light passes or does not. Every strategy's intersect goes through here.
+// What becomes of a triangle that a ray was found to cross: the nearest counts (ties: the lower triangle), or, for
+// shadow rays, light passes or does not. Every strategy's intersect goes through here.
 #ifndef SHEAF_CANDIDATE_GLSL
 #define SHEAF_CANDIDATE_GLSL
 #include "scene/attributes.glsl"
@@ -16,8 +16,9 @@ struct Nearest {
   uint triangle;
 };
 
-// A candidate that its material may yet take back. Looking at materials is rare and costs much, and on a SIMD device code that
-// one lane needs is paid by all: so traversal goes on until no lane can without an answer, and asks for all lanes at once.
+// A candidate that its material may yet take back. Looking at materials is rare and costs much, and on a SIMD device
+// code that one lane needs is paid by all: so traversal goes on until no lane can without an answer, and asks for all
+// lanes at once.
 struct Pending {
   uint triangle;  // NO_INDEX: none
   float t;
@@ -26,7 +27,8 @@ struct Pending {
 const Pending NOTHING_PENDING = Pending(NO_INDEX, 0.0, vec3(0));
 
 // A nearer hit, or an equal one of a lower triangle, is taken; where an alpha mask has a say it is left pending.
-void consider_nearest_corners(Corners corners, uint triangle, Shear s, float tmin, inout Nearest best, inout Pending pending) {
+void consider_nearest_corners(Corners corners, uint triangle, Shear s, float tmin, inout Nearest best,
+                              inout Pending pending) {
   TriangleHit h = seen_corners(s, corners, tmin, best.t);
   if (!h.hit || (h.t == best.t && triangle > best.triangle)) return;
   if (MASKED && (corners.instance & TRIANGLE_MASKED) != 0u) {
@@ -53,20 +55,24 @@ struct Shade {      // what a shadow ray has met so far
   bool blocked;
   uint triangle;    // the lowest that blocks; any would do
   float t;
-  ivec3 stops;      // −log2 of the light passed, OPTICAL_STEP steps a stop
+  ivec3 optical_depth;      // −log2 of the light passed, OPTICAL_STEP steps a stop
 };
 
 const float LEAST_LIGHT = 2.4e-10;  // 2^-32: less is nothing
-const float MAX_STOPS = 65536.0;    // of one crossing: eight of them fit a 32-bit sum
-const float BLACK_STOPS = 128.0;    // of a crossing of a black volume: thousands fit, and each is more than LEAST_LIGHT
+const float MAX_OPTICAL_DEPTH = 65536.0;    // of one crossing: eight of them fit a 32-bit sum
+// Of a crossing of a black volume: thousands fit, and each is more than LEAST_LIGHT.
+const float BLACK_OPTICAL_DEPTH = 128.0;
 
-ivec3 to_steps(vec3 stops) { return ivec3(round(clamp(stops, -MAX_STOPS, MAX_STOPS) * float(OPTICAL_STEP))); }
+ivec3 to_steps(vec3 depth) {
+  return ivec3(round(clamp(depth, -MAX_OPTICAL_DEPTH, MAX_OPTICAL_DEPTH) * float(OPTICAL_STEP)));
+}
 
-// Optical depth of one crossing at t; false where nothing passes. A finite tmax: the ray comes from the light and ends at the
-// lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one left absorbs over t.
-bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 stops) {
+// Optical depth of one crossing at t; false where nothing passes. A finite tmax: the ray comes from the light and ends
+// at the lit point, so a volume entered at t and not left absorbs over tmax − t; else it comes from the point, and one
+// left absorbs over t.
+bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout ivec3 depth) {
   Corners corners = load_triangle(triangle);
-  Looks looks = looks_of(instance_of(corners));
+  ShadingInputs looks = shading_inputs_of(instance_of(corners));
   Instance instance = looks.instance;
   Material m = looks.material;
   if ((m.flags & MATERIAL_NOT_OPAQUE) == 0u) return false;
@@ -86,15 +92,16 @@ bool crossing(uint triangle, vec3 b, vec3 direction, float t, float tmax, inout 
   float a = (m.flags & MATERIAL_BLEND) != 0u ? clamp(base.a, 0.0, 1.0) : 1.0;
   passed = (1.0 - a) + a * passed;
   if (!(max(max(passed.x, passed.y), passed.z) > LEAST_LIGHT)) return false;
-  stops += to_steps(-log2(clamp(passed, vec3(LEAST_LIGHT), vec3(1))));
+  depth += to_steps(-log2(clamp(passed, vec3(LEAST_LIGHT), vec3(1))));
   if (m.volume != 0u) {
-    // What is more than MAX_STOPS over the whole way (that of a ray without an end: across the scene, whose largest coordinate
-    // is box_pad · 2^21) is that much, so that what entering adds and leaving takes away keep their difference.
+    // What is more than MAX_OPTICAL_DEPTH over the whole way (that of a ray without an end: across the scene, whose
+    // largest coordinate is box_pad · 2^21) is that much, so that what entering adds and leaving takes away keep their
+    // difference.
     float inside = tmax < INFINITY ? tmax - t : -t, way = tmax < INFINITY ? tmax : frame.box_pad * 8388608.0;
-    vec3 absorption = min(m.absorption, vec3(MAX_STOPS / max(way, 1e-30)));
+    vec3 absorption = min(m.absorption, vec3(MAX_OPTICAL_DEPTH / max(way, 1e-30)));
     vec3 more = absorption * (cosine < 0.0 ? inside : -inside);
-    for (uint c = 0u; c < 3u; ++c) more[c] = m.absorption[c] >= ABSORBS_ALL ? BLACK_STOPS : more[c];
-    stops += to_steps(more);
+    for (uint c = 0u; c < 3u; ++c) more[c] = m.absorption[c] >= ABSORBS_ALL ? BLACK_OPTICAL_DEPTH : more[c];
+    depth += to_steps(more);
   }
   return true;
 }
@@ -117,7 +124,8 @@ void consider_shadow(uint triangle, Shear s, float tmin, float tmax, inout Shade
 }
 
 void settle_shadow(vec3 direction, float tmax, inout Shade shade, inout Pending pending) {
-  if (pending.triangle != NO_INDEX && !crossing(pending.triangle, pending.barycentric, direction, pending.t, tmax, shade.stops)) {
+  if (pending.triangle != NO_INDEX &&
+      !crossing(pending.triangle, pending.barycentric, direction, pending.t, tmax, shade.optical_depth)) {
     shade.blocked = true;
     shade.triangle = pending.triangle;
     shade.t = pending.t;

@@ -2,9 +2,9 @@
 // Nodes over rays (R 4.3, H): a sphere that holds all origins, a cone that holds all directions.
 //
 // The cone keeps its half-angle, not a cosine: near 0 a float cosine cannot tell 0 from 3e-4 rad.
-// Padding. angle_between errs by less than 4·2^-24 + 6·2^-24·angle (two products and a difference a coordinate of the cross
-// product, the square root, 4 ulps of `arc`); unit axes are off unit by 2^-23. PAD = 2^-20 absolute and
-// relative covers the sum of both and of the addition. Distances: three squares, a root and a subtraction, 4·2^-24 relative;
+// Padding. angle_between errs by less than 4·2^-24 + 6·2^-24·angle (two products and a difference a coordinate of the
+// cross product, the square root, 4 ulps of `arc`); unit axes are off unit by 2^-23. PAD = 2^-20 absolute and relative
+// covers the sum of both and of the addition. Distances: three squares, a root and a subtraction, 4·2^-24 relative;
 // again PAD. The centre is any point: only the distances from it must be bounded.
 #ifndef SHEAF_RAY_NODE_GLSL
 #define SHEAF_RAY_NODE_GLSL
@@ -20,9 +20,9 @@ const float PAD = 9.5367432e-7;
 const float LEAST = 1.3010426e-18;  // 2^-59; a length of three squares that vanish is 2^-63·√3 at most
 const float HALF_PI = 1.57079632679;
 
-// Angle of (x, y) from the x axis, y ≥ 0. Not the built-in atan: Vulkan lets it err by 4096 ulps, and llvmpipe's errs by 4e-6
-// of the angle (its asin by 4e-4). Here t ≤ tan(π/8), where the polynomial (a minimax fit of (atan(t)/t − 1)/t² in t²) is right
-// to 2e-8 of the angle; the rest is the rounding of a quotient, two products and two sums.
+// Angle of (x, y) from the x axis, y ≥ 0. Not the built-in atan: Vulkan lets it err by 4096 ulps, and llvmpipe's errs
+// by 4e-6 of the angle (its asin by 4e-4). Here t ≤ tan(π/8), where the polynomial (a minimax fit of (atan(t)/t − 1)/t²
+// in t²) is right to 2e-8 of the angle; the rest is the rounding of a quotient, two products and two sums.
 float arc(float y, float x) {
   float across = abs(x), t = min(across, y) / max(across, y);
   bool upper = t > 0.41421356;
@@ -50,23 +50,24 @@ struct Cone {
   float cosine, sine;
 };
 
-// Sine and cosine of an angle from 0 to π/2. Not the built-in ones: Vulkan lets them err by 2^-11. The series end where what they
-// leave out is 6e-8 and 7e-9; Horner's sums add 2^-23.
+// Sine and cosine of an angle from 0 to π/2. Not the built-in ones: Vulkan lets them err by 2^-11. The series end where
+// what they leave out is 6e-8 and 7e-9; Horner's sums add 2^-23.
 float sine_of(float x) {
   float z = x * x;
   return x + x * z * (-1.6666667e-1 + z * (8.3333333e-3 + z * (-1.9841270e-4 + z * (2.7557319e-6 - z * 2.5052108e-8))));
 }
 float cosine_of(float x) {
   float z = x * x;
-  return 1.0 - z * (0.5 - z * (4.1666667e-2 - z * (1.3888889e-3 - z * (2.4801587e-5 - z * (2.7557319e-7 - z * 2.0876757e-9)))));
+  return 1.0 - z * (0.5 - z * (4.1666667e-2 -
+                               z * (1.3888889e-3 - z * (2.4801587e-5 - z * (2.7557319e-7 - z * 2.0876757e-9)))));
 }
 
 // Past π/2 there is no cone, and neither value is asked for.
 Cone cone_of(RayNode n) { return Cone(n, cosine_of(min(n.angle, HALF_PI)), sine_of(min(n.angle, HALF_PI))); }
 
-// Whether some ray of the node may meet the sphere (algorithm 6). w = |v × a|, not a root of a difference, which cancels.
-// The comparisons give way by SLACK of the lengths involved: three products and two sums a side, and sin, cos to 2^-21; and by LEAST, since
-// squares of what is shorter than 2^-63 are not normal floats.
+// Whether some ray of the node may meet the sphere (algorithm 6). w = |v × a|, not a root of a difference, which
+// cancels. The comparisons give way by SLACK of the lengths involved: three products and two sums a side, and sin, cos
+// to 2^-21; and by LEAST, since squares of what is shorter than 2^-63 are not normal floats.
 bool cone_meets_sphere(Cone cone, vec3 centre, float radius) {
   RayNode n = cone.node;
   const float SLACK = 3.8146973e-6;  // 2^-18

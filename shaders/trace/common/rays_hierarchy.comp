@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One level of the hierarchy over the sorted rays, bottom up, arity 4 (R 4.3). The four children are bounded at once: mean axis
-// and largest angle, box centre and largest distance; tighter than three unions of pairs.
+// One level of the hierarchy over the sorted rays, bottom up, arity 4 (R 4.3). The four children are bounded at once:
+// mean axis and largest angle, box centre and largest distance; tighter than three unions of pairs.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The walk of visit.glsl where all lanes of a subgroup go the same way: the stack is spread over them, an entry a lane, and so are
-// the children of the node at work. To pick one is an exchange, where a load or a store goes lane by lane on a CPU device.
+// The walk of visit.glsl where all lanes of a subgroup go the same way: the stack is spread over them, an entry a lane,
+// and so are the children of the node at work. To pick one is an exchange, where a load or a store goes lane by lane on
+// a CPU device.
 #ifndef SHEAF_VISIT_SUBGROUP_GLSL
 #define SHEAF_VISIT_SUBGROUP_GLSL
 const uint STACK_ROWS = (STACK_SIZE + LANES - 1u) / LANES;
@@ -20,7 +21,7 @@ uint own_child(uint slot) {
   return LANES < 8u && slot >= 4u ? subgroupShuffle(children.y, slot & 3u) : subgroupShuffle(children.x, slot);
 }
 
-uint child_together(uint slot) { return IN_TURN ? OF_LANE(children.x, slot) : own_child(slot); }
+uint child_subgroup(uint slot) { return IN_TURN ? OF_LANE(children.x, slot) : own_child(slot); }
 
 // Which of the children held are leaves, a bit each; of slots that are empty it means nothing.
 uint leaf_children() {
@@ -29,7 +30,7 @@ uint leaf_children() {
 }
 
 // The node's children that were entered, a bit each, come next.
-void visit_together(inout Visit v, uint node, uint entered) {
+void visit_children_subgroup(inout Visit v, uint node, uint entered) {
   if (entered == 0u) return;
   if ((v.group & 255u) != 0u) {
     [[unroll]] for (uint r = 0u; r < STACK_ROWS; ++r)
@@ -46,7 +47,7 @@ uint stacked_group(uint depth) {
 }
 
 // As next_child().
-uint next_together(inout Visit v) {
+uint next_child_subgroup(inout Visit v) {
   if ((v.group & 255u) == 0u) {
     if (v.depth == 0u) return CHILD_EMPTY;
     --v.depth;
@@ -55,7 +56,7 @@ uint next_together(inout Visit v) {
   hold_children(v.group >> 8);
   uint slot = lowest_bit(v.group & 255u) ^ v.octant;
   v.group &= v.group - 1u;
-  return child_together(slot);
+  return child_subgroup(slot);
 }
 
 // For lanes that go on alone.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What the rays of a packet have in common: dominant axis and sign, a cell of directions, and, of sorted rays, the leading bits of the
-// hash of the list as it now stands (S: the re-ordered rays are compressed once more). Rays that part would have a frustum that
-// meets half the scene: where few rays share the leading bits, off spheres, packets of three tested 6000 nodes a ray.
+// What the rays of a packet have in common: dominant axis and sign, a cell of directions, and, of sorted rays, the
+// leading bits of the hash of the list as it now stands (S: the re-ordered rays are compressed once more). Rays that
+// part would have a frustum that meets half the scene: where few rays share the leading bits, off spheres, packets of
+// three tested 6000 nodes a ray.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -18,7 +19,8 @@ layout(push_constant) uniform Push {
   PUSH_LIST
 } push;
 
-// Directions' cells along an edge of the cube of them: of a sixteenth and a quarter of a radian. Shadow rays of a packet begin at one lamp.
+// Directions' cells along an edge of the cube of them: of a sixteenth and a quarter of a radian. Shadow rays of a
+// packet begin at one lamp.
 const uint CELLS = 32u, SHADOW_CELLS = 8u;
 
 void main() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Local intersection tests (R 4.5): what is left is (ray, triangle). Many pairs of one ray run at once; the nearest is a 64-bit
-// minimum of (t, triangle), optical depths are integer sums, so the order of the pairs does not show.
+// Local intersection tests (R 4.5): what is left is (ray, triangle). Many pairs of one ray run at once; the nearest is
+// a 64-bit minimum of (t, triangle), optical depths are integer sums, so the order of the pairs does not show.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -45,7 +45,7 @@ void main() {
     if (shade.blocked) atomicMin(hit_at(push.hits, slot).v, pack_hit(shade.t, shade.triangle));
     if (TRANSLUCENT)
       for (uint c = 0u; c < 3u; ++c)
-        if (shade.stops[c] != 0) atomicAdd(optical_depth[3u * slot + c], shade.stops[c]);
+        if (shade.optical_depth[c] != 0) atomicAdd(optical_depth[3u * slot + c], shade.optical_depth[c]);
   } else {
     Nearest best = Nearest(ray.tmax, NO_INDEX);
     consider_nearest(pair.y, s, ray.tmin, best, pending);

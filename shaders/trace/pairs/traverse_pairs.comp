@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One level of the breadth-first traversal (R 4.4): candidates (node, object) are tested sphere-and-cone against sphere.
-// Candidates come from seeds (a node and a run of objects) or from the survivors of the step before, each opened into
-// its node's ARITY children or its part's triangles. Survivors are marked; compaction follows.
+// One level of the breadth-first traversal (R 4.4): candidates (node, object) are tested sphere-and-cone against
+// sphere. Candidates come from seeds (a node and a run of objects) or from the survivors of the step before, each
+// opened into its node's ARITY children or its part's triangles. Survivors are marked; compaction follows.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -76,5 +76,6 @@ void main() {
   survivors[i] = survives ? 1u : 0u;
   count_tests(push.kind, STAT_NODE_OBJECT, exists ? 1u : 0u);
   count_tests(push.kind, STAT_LEVELS + min(push.level, MAX_LEVELS - 1u), exists ? 1u : 0u);
-  if (PIXEL_COUNTED && exists && push.level == 0u) count_pixel(load_ray_pixel(push.rays, load_slot(push.order, pair.x)), 1u);
+  if (PIXEL_COUNTED && exists && push.level == 0u)
+    count_pixel(load_ray_pixel(push.rays, load_slot(push.order, pair.x)), 1u);
 }

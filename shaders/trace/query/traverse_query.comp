@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_query : require
-// Strategy `rayquery`: the driver's acceleration structure finds candidate boxes of triangles, our own test decides. The
-// driver's triangle test would not give the same bytes: its edge rule and its t are its own.
+// Strategy `rayquery`: the driver's acceleration structure finds candidate boxes of triangles, our own test decides.
+// The driver's triangle test would not give the same bytes: its edge rule and its t are its own.
 #define COMPUTE
 #include "lib/common.glsl"
 #include "lists/rays.glsl"
@@ -48,7 +48,8 @@ void main() {
       consider_nearest(triangle, s, ray.tmin, best, pending);
       if (MASKED) settle_nearest(best, pending);
       // Tell the driver how far to look: past our t by its rounding, so that equal hits are still shown.
-      if (best.t < before) rayQueryGenerateIntersectionEXT(query, min(best.t * 1.0001 + 4.0 * frame.box_pad, far_limit));
+      if (best.t < before)
+        rayQueryGenerateIntersectionEXT(query, min(best.t * 1.0001 + 4.0 * frame.box_pad, far_limit));
     }
   }
   if (ANY_HIT)

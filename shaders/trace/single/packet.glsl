@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A packet: the rays of a subgroup, a ray a lane, that walk the object hierarchy together while they keep together. Nodes and
-// triangles are loaded once for all, a pair of words a lane, and a node's boxes are decoded at once, a box a lane; only the tests are
-// each ray's own. On a CPU device a step costs less than half of what it costs where each lane has a node of its own
-// (single_ray.glsl), so it may enter nodes that few of its rays enter, and still be ahead. Where too few do, the rays go on alone.
+// A packet: the rays of a subgroup, a ray a lane, that walk the object hierarchy together while they keep together.
+// Nodes and triangles are loaded once for all, a pair of words a lane, and a node's boxes are decoded at once, a box a
+// lane; only the tests are each ray's own. On a CPU device a step costs less than half of what it costs where each lane
+// has a node of its own (single_ray.glsl), so it may enter nodes that few of its rays enter, and still be ahead. Where
+// too few do, the rays go on alone.
 //
 // All lanes of the subgroup are active throughout; one without a ray has a farthest hit of −∞.
 #ifndef SHEAF_PACKET_GLSL
@@ -58,7 +59,8 @@ void test_triangle(Corners corners, uint triangle, bool enters, Ray ray, Shear s
   if (asks_materials()) wait_for_material(ray, pending, best, shade);
 }
 
-// Leaves of the node at work: for all rays one after the other, or each ray its own, which costs about 1.7 times as much a triangle.
+// Leaves of the node at work: for all rays one after the other, or each ray its own, which costs about 1.7 times as
+// much a triangle.
 void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, inout Shade shade, inout Tests tests) {
   bool apart = 1.7 * max_lanes(float(bitCount(own))) < float(bitCount(leaves));
   uint todo = apart ? own : leaves;
@@ -68,17 +70,17 @@ void test_leaves(uint leaves, uint own, Ray ray, Shear s, inout Nearest best, in
     if (apart)
       leaf = own_child(slot);
     else
-      leaf = child_together(slot);
+      leaf = child_subgroup(slot);
     todo &= todo - (has ? 1u : 0u);
     uint triangle = leaf_first(leaf), last = has ? triangle + leaf_count(leaf) : triangle;
     while (apart ? any_lane(triangle < last) : triangle < last) {
-      bool there = triangle < last;
+      bool is_active = triangle < last;
       Corners corners;
       if (apart)
-        corners = load_triangle(there ? triangle : 0u);
+        corners = load_triangle(is_active ? triangle : 0u);
       else
-        corners = load_triangle_together(triangle);
-      test_triangle(corners, triangle, there, ray, s, best, shade, tests);
+        corners = load_triangle_subgroup(triangle);
+      test_triangle(corners, triangle, is_active, ray, s, best, shade, tests);
       ++triangle;
     }
   }
@@ -94,14 +96,16 @@ uint entered_by(Boxes boxes, Ray ray, Shear s, float farthest) {
   [[unroll]] for (uint c = 0u; c < WIDE; ++c) {
     bool upper = LANES < 8u && c >= 4u;
     uint lane = upper ? c - 4u : c;
-    vec2 range = slab(s, subgroupBroadcast(upper ? upper_lo : lo, lane), subgroupBroadcast(upper ? upper_hi : hi, lane));
+    vec2 range =
+        slab(s, subgroupBroadcast(upper ? upper_lo : lo, lane), subgroupBroadcast(upper ? upper_hi : hi, lane));
     entered |= range.x <= range.y && range.y >= ray.tmin && range.x <= farthest ? 1u << c : 0u;
   }
-  return entered & boxes.grid.there;
+  return entered & boxes.grid.present;
 }
 
-// A node's step pays where more than LEAST_TOGETHER of eight rays enter some child; what the better steps saved, worse ones may spend.
-const int LEAST_TOGETHER = 3, MOST_SAVED = 16;
+// A node's step pays where more than LEAST_ENTERING of eight rays enter some child; what the better steps saved, worse
+// ones may spend.
+const int LEAST_ENTERING = 3, MOST_SAVED = 16;
 
 // Where the rays part, `w` is where each goes on alone, which it is not otherwise.
 void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Tests tests) {
@@ -109,18 +113,18 @@ void walk_packet(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade
   uint node = 0u;
   int saved = MOST_SAVED;
   while (node != CHILD_EMPTY && saved >= 0) {
-    uint entered = entered_by(load_boxes_together(node), ray, s, best.t);
+    uint entered = entered_by(load_boxes_subgroup(node), ray, s, best.t);
     if (best.t > -INFINITY) tests.boxes += WIDE;
     uint alike = or_lanes(entered | (entered != 0u ? 256u << gl_SubgroupInvocationID : 0u)), some = alike & 255u;
     hold_children(node);
     uint leaves = some & leaf_children();
-    visit_together(w.visit, node, some & ~leaves);
+    visit_children_subgroup(w.visit, node, some & ~leaves);
     if (leaves != 0u) {
       test_leaves(leaves, entered & leaves, ray, s, best, shade, tests);
       if (ANY_HIT && !any_lane(best.t > -INFINITY)) break;
     }
-    saved = min(saved + int(8u * bitCount(alike >> 8) / LANES) - LEAST_TOGETHER, MOST_SAVED);
-    node = next_together(w.visit);
+    saved = min(saved + int(8u * bitCount(alike >> 8) / LANES) - LEAST_ENTERING, MOST_SAVED);
+    node = next_child_subgroup(w.visit);
   }
   if (asks_materials()) settle_all(ray, best, shade);
   w.current = node == CHILD_EMPTY || !(best.t > -INFINITY) ? CHILD_EMPTY : node;

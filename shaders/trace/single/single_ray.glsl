@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // One ray a lane through the object hierarchy, depth first, nearer children first. Exact: see triangle.glsl.
 //
-// On a CPU device an `if` is passed over only where no lane takes it, and a loop runs until its last lane is done. So the walk is
-// two inner loops, one that descends until every lane has a leaf and one that tests leaves' triangles; and a node's children
-// are tested as straight-line code.
+// On a CPU device an `if` is passed over only where no lane takes it, and a loop runs until its last lane is done. So
+// the walk is two inner loops, one that descends until every lane has a leaf and one that tests leaves' triangles; and
+// a node's children are tested as straight-line code.
 #ifndef SHEAF_SINGLE_RAY_GLSL
 #define SHEAF_SINGLE_RAY_GLSL
 #include "trace/common/visit.glsl"
@@ -14,7 +14,8 @@ struct Tests {
   uint triangles;
 };
 
-const uint NEXT = 0xFFFFFFFEu;  // in place of a child: take the next from the stack (no leaf reads so: it would end past 2^27)
+// In place of a child: take the next from the stack (no leaf reads so: it would end past 2^27).
+const uint NEXT = 0xFFFFFFFEu;
 
 struct Walk {
   uint current;  // a node, the rest of a leaf, NEXT, or CHILD_EMPTY: done
@@ -34,12 +35,13 @@ void step_node(uint node, Ray ray, Shear s, float farthest, inout Walk w, inout 
     entered |= range.x <= range.y && range.y >= ray.tmin && range.x <= farthest ? 1u << c : 0u;
   }
   tests.boxes += WIDE;
-  visit_children(w.visit, node, entered & boxes.grid.there);
+  visit_children(w.visit, node, entered & boxes.grid.present);
   w.current = NEXT;
 }
 
 // The first triangle of what is left of a leaf.
-void step_leaf(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Pending pending, inout Tests tests) {
+void step_leaf(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Pending pending,
+               inout Tests tests) {
   ++tests.triangles;
   uint triangle = leaf_first(w.current);
   if (ANY_HIT)
@@ -51,14 +53,16 @@ void step_leaf(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade s
 }
 
 // Until the ray is done or a material must be asked.
-void walk_on(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Pending pending, inout Tests tests) {
+void walk_on(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade shade, inout Pending pending,
+             inout Tests tests) {
   while (w.current != CHILD_EMPTY && pending.triangle == NO_INDEX) {
     while (is_node(w.current) || w.current == NEXT) {
       uint place;
       if (w.current == NEXT) w.current = next_child(w.visit, place);
       if (is_node(w.current)) step_node(w.current, ray, s, best.t, w, tests);
     }
-    while (is_rest_of_leaf(w.current) && pending.triangle == NO_INDEX) step_leaf(ray, s, w, best, shade, pending, tests);
+    while (is_rest_of_leaf(w.current) && pending.triangle == NO_INDEX)
+      step_leaf(ray, s, w, best, shade, pending, tests);
   }
 }
 

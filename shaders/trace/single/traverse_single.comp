@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or (PACKETS)
-// first by the packet.
+// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or
+// (PACKETS) first by the packet.
 #define COMPUTE
 #include "lib/common.glsl"
 #extension GL_EXT_control_flow_attributes : require
@@ -14,7 +14,7 @@
 #include "lib/counting.glsl"
 #include "trace/single/single_ray.glsl"
 BUFFER(ROLE_WORK, readonly, uint, work);
-layout(constant_id = SPEC_LOOSE) const bool LOOSE = false;
+layout(constant_id = SPEC_INCOHERENT) const bool INCOHERENT = false;
 
 layout(push_constant) uniform Push {
   uint kind;
@@ -24,29 +24,29 @@ layout(push_constant) uniform Push {
 
 void main() {
   uint i = global_index();
-  if (LOOSE) {
-    if (global_group() >= counters[COUNT_LOOSE]) return;
+  if (INCOHERENT) {
+    if (global_group() >= counters[COUNT_INCOHERENT]) return;
     i = work[global_group()] * gl_WorkGroupSize.x + local_index();
   }
   uint last = counters[COUNT_RAYS + push.kind];
-  bool there = true;
+  bool is_active = true;
   if (push.count != 0u) {
-    there = i < push.count;
+    is_active = i < push.count;
     i += push.first;
   }
-  there = there && i < last;
+  is_active = is_active && i < last;
 #ifdef PACKETS  // whose lanes all stay: one without a ray finds nothing
-  if (!any_lane(there)) return;
+  if (!any_lane(is_active)) return;
 #else
-  if (!there) return;
+  if (!is_active) return;
 #endif
-  uint slot = load_slot(push.order, there ? i : last - 1u);
+  uint slot = load_slot(push.order, is_active ? i : last - 1u);
   Ray ray = load_ray(push.rays, slot);
-  Nearest best = Nearest(there ? ray.tmax : -INFINITY, NO_INDEX);
+  Nearest best = Nearest(is_active ? ray.tmax : -INFINITY, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   Tests tests = Tests(0u, 0u);
   trace_single(ray, best, shade, tests);
-  if (!there) return;
+  if (!is_active) return;
   if (ANY_HIT)
     store_shade(push.hits, slot, shade);
   else
