@@ -19,7 +19,8 @@ class Scan {
  public:
   Scan() = default;
   Scan(const Device& device, const std::string& stem) {
-    const SpecConstant group{SPEC_GROUP, gpu::SCAN_GROUP};
+    // One subgroup of a CPU device (scan.glsl); its size divides SCAN_BLOCK.
+    const SpecConstant group{SPEC_GROUP, device.limits().cpu ? device.limits().subgroup : gpu::SCAN_GROUP};
     reduce_ = Kernel(device, stem + "_reduce", {&group, 1});
     spine_ = Kernel(device, stem + "_spine", {&group, 1});
     scatter_ = Kernel(device, stem + "_scatter", {&group, 1});

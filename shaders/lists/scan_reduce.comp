@@ -8,9 +8,9 @@
 
 void main() {
   uint block = global_group(), count = scan_count();
-  uint first = block * SCAN_BLOCK + local_index() * SCAN_RUN;
+  uint first = block * SCAN_BLOCK + local_index() * RUN;
   uint sum = 0u;
-  for (uint i = first; i < min(first + SCAN_RUN, count); ++i) sum = scan_join(sum, scan_load(i));
+  for (uint i = first; i < min(first + RUN, count); ++i) sum = scan_join(sum, scan_load(i));
   uint total;
   scan_workgroup(sum, total);
   if (local_index() == 0u && block * SCAN_BLOCK < count) block_sums[block] = total;

@@ -8,7 +8,7 @@
 
 void main() {
   uint block = global_group(), count = scan_count();
-  uint first = block * SCAN_BLOCK + local_index() * SCAN_RUN, last = min(first + SCAN_RUN, count);
+  uint first = block * SCAN_BLOCK + local_index() * RUN, last = min(first + RUN, count);
   uint sum = 0u;
   for (uint i = first; i < last; ++i) sum = scan_join(sum, scan_load(i));
   uint total;

@@ -9,7 +9,7 @@
 
 void main() {
   uint blocks = groups_of(scan_count(), SCAN_BLOCK);
-  uint run = groups_of(blocks, SCAN_GROUP);
+  uint run = groups_of(blocks, gl_WorkGroupSize.x);
   uint first = local_index() * run, last = min(first + run, blocks);
   uint sum = 0u;
   for (uint i = first; i < last; ++i) sum = scan_join(sum, block_sums[i]);
