@@ -52,7 +52,7 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
       ->capture_default_str()
       ->group("Limits");
   limit("--max-pixels", limits.pixels, "pixels of a frame");
-  limit("--max-spp", limits.spp, "samples a pixel");
+  limit("--max-spp", limits.spp, "samples per pixel");
   limit("--max-depth", limits.depth, "depth of reflection and refraction");
   limit("--max-memory", limits.memory_mib, "MiB of a job's memory budget");
   limit("--max-queue", limits.queued_jobs, "jobs that wait");

@@ -55,7 +55,7 @@ class Hash {
 };
 
 // Part of traversal's time that hybrid is expected to save: bundles pay where neighbouring rays meet the same
-// triangles. Measured, triangles a pixel and saving of all CPU time: 0.003, 13 % (Cornell box); 0.015, 18 %
+// triangles. Measured, triangles per pixel and saving of all CPU time: 0.003, 13 % (Cornell box); 0.015, 18 %
 // (animation); 0.1, 11 % (a city); 0.24, -5 % (a crowd); 0.28, 22 % (Sponza); 0.56, -2 % (spheres); 1.6, -8 %; 4, 6 %
 // (Sponza again) and -19 %. Where it is not known, a run of a hundred times the price pays for finding out.
 double expected_saving(std::uint64_t triangles, const RenderSettings& settings) {

@@ -19,7 +19,7 @@ class DumpWriter {
 
   void begin(std::int64_t frame);
   void triangles(std::vector<float> corners, const glm::dvec3& origin);  // 9 a triangle
-  /// 8 floats a ray: origin, tmin, direction, tmax; one record a ray. Tiles and samples append.
+  /// 8 floats per ray: origin, tmin, direction, tmax; one record per ray. Tiles and samples append.
   void rays(std::uint32_t generation, std::uint32_t kind, const std::vector<float>& rays,
             const std::vector<HitRecord>& hits);
   /// Forgets the rays since mark(): a tile that did not fit is traced again in parts.

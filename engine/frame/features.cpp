@@ -11,7 +11,7 @@ namespace sheaf {
 namespace {
 
 // A rasteriser looks at every triangle, a ray at the logarithm. Wall time of whole frames of a city of 1 M triangles on
-// a CPU device, drawn against traced: of 1.1 triangles a pixel 0.77, of 4.4 0.87, of 8 0.96, of 17 1.14, of 69 1.86.
+// a CPU device, drawn against traced: of 1.1 triangles per pixel 0.77, of 4.4 0.87, of 8 0.96, of 17 1.14, of 69 1.86.
 constexpr std::uint64_t most_triangles_a_pixel = 8;
 
 struct Roughness {
@@ -174,8 +174,9 @@ Plan make_plan(const Features& features, const RenderSettings& settings, Strateg
       !plan.adaptive;
   if (!plan.raster)
     leave("raster", plan.adaptive ? "--spp adaptive: a rasteriser does not draw single pixels"
-                    : settings.primary == PrimaryMethod::trace ? "--primary trace"
-                                                               : "more than eight triangles a pixel: rays are cheaper");
+                    : settings.primary == PrimaryMethod::trace
+                        ? "--primary trace"
+                        : "more than eight triangles per pixel: rays are cheaper");
   if (!features.textured) leave("texture filter", "no textures");
   plan.transform_on_fetch = transforms_on_fetch(features, settings);
   if (plan.transform_on_fetch)

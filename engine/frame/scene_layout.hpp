@@ -41,7 +41,7 @@ struct SceneLayout {
   bool morphed_attributes = false;           // some have texture coordinates or colors that are morphed
   bool mirrored_skins = false;               // some skin may have a joint that mirrors
   double rank_extent = 0;                    // Coincidence::extent
-  std::vector<std::uint32_t> node_children;  // WIDE words a node; the first `top_nodes` are the top level's
+  std::vector<std::uint32_t> node_children;  // WIDE words per node; the first `top_nodes` are the top level's
   std::vector<std::vector<std::uint32_t>> refit_by_height;  // of the instances' nodes that a part holds
   std::vector<std::uint32_t> node_instance;                 // a node (past the top level): its instance
   std::uint32_t top_nodes = 1;

@@ -119,8 +119,9 @@ std::string StrategyTrial::because() const {
   const char *first = name_of(terms_.first), *second = name_of(terms_.second);
   if (looks_ > 0) {
     const bool wins = now_ == terms_.second;
-    std::snprintf(text.data(), text.size(), "the cheaper as measured on batches of this run: %s %.0f ns a ray, %s %.0f",
-                  wins ? second : first, 1e6 * (wins ? second_per_ray_ : first_per_ray_), wins ? first : second,
+    std::snprintf(text.data(), text.size(),
+                  "the cheaper as measured on batches of this run: %s %.0f ns per ray, %s %.0f", wins ? second : first,
+                  1e6 * (wins ? second_per_ray_ : first_per_ray_), wins ? first : second,
                   1e6 * (wins ? first_per_ray_ : second_per_ray_));
   } else if (phase_ == Phase::alone) {
     std::snprintf(text.data(), text.size(), "%s could save %.2f s of what is left, and its kernels take %.2f s to make",

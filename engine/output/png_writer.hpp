@@ -15,7 +15,7 @@ namespace sheaf {
 /// almost as they are and rolls brighter ones off towards white. Negative and NaN components count as 0.
 [[nodiscard]] glm::vec3 tone_map(glm::vec3 linear);
 
-/// `rgba`: 4 floats a pixel, linear, premultiplied (so that over black is RGB itself), row 0 at the top.
+/// `rgba`: 4 floats per pixel, linear, premultiplied (so that over black is RGB itself), row 0 at the top.
 /// Throws Error{usage} if the size does not fit.
 [[nodiscard]] std::vector<std::byte> encode_preview_png(std::span<const float> rgba, std::uint32_t width,
                                                         std::uint32_t height);

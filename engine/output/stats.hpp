@@ -74,7 +74,7 @@ struct RunStats {
 /// rays_per_second over wall time without repeated frames; null where there is nothing to divide by.
 [[nodiscard]] nlohmann::ordered_json to_json(const RunStats& run);
 
-/// One line a frame under a header that never depends on the run. Times of stages outside `stage_names` add up in
+/// One line per frame under a header that never depends on the run. Times of stages outside `stage_names` add up in
 /// `other_ms`. A stage left out and the tests of an uncounted frame are empty fields.
 [[nodiscard]] std::string to_csv(const RunStats& run);
 

@@ -159,7 +159,7 @@ class Renderer {
 ReferenceFrame render_reference(const Scene& scene, const Pose& pose, const CameraView& view,
                                 const ReferenceSettings& settings) {
   if (settings.width == 0 || settings.height == 0) throw input_error("reference", "a picture without pixels");
-  if (settings.spp == 0) throw input_error("reference", "no samples a pixel");
+  if (settings.spp == 0) throw input_error("reference", "no samples per pixel");
   const std::uint32_t threads =
       settings.threads != 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
   ReferenceSettings complete = settings;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many samples a pixel gets: the same for all, or as many as its error asks for.
+// Samples per pixel: the same for all, or as many as its error asks for.
 #pragma once
 
 #include <cstdint>

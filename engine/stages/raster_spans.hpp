@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Raster on CPU devices: a triangle a lane, larger ones along their spans, by the test that traced rays make.
+// Raster on CPU devices: a triangle per lane, larger ones along their spans, by the test that traced rays make.
 #pragma once
 
 #include "frame/features.hpp"

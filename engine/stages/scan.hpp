@@ -26,7 +26,7 @@ class Scan {
     scatter_ = Kernel(device, stem + "_scatter", {&group, 1});
   }
 
-  /// `args`: the ARGS_… record with one workgroup a block. The spine always runs: it publishes the total, also of
+  /// `args`: the ARGS_… record with one workgroup per block. The spine always runs: it publishes the total, also of
   /// nothing.
   void record(Recorder& recorder, const ScanPush& push, std::uint32_t args) const {
     recorder.dispatch_indirect(reduce_, push, args);

@@ -13,7 +13,7 @@ struct KeyLayout {
   [[nodiscard]] std::uint32_t bits() const { return coordinates * coordinate_bits + light_bits; }
 };
 
-/// Shadow rays: as many bits as leave about 16 rays a cell if a batch of `rays` fills half of them; fewer bits are
+/// Shadow rays: as many bits as leave about 16 rays per cell if a batch of `rays` fills half of them; fewer bits are
 /// fewer passes. Others: four a coordinate. With six the hierarchy's tests fall by another 1 %, with two they rise by 3
 /// to 7 %.
 [[nodiscard]] KeyLayout key_layout(std::uint32_t kind, std::uint32_t lights, std::uint64_t rays);

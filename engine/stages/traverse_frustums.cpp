@@ -7,7 +7,7 @@
 namespace sheaf {
 namespace {
 
-// Leading bits of the hash that the rays of a packet share: about BUNDLE rays a cell if a batch filled half of them.
+// Leading bits of the hash that the rays of a packet share: about BUNDLE rays per cell if a batch filled half of them.
 std::uint32_t shared_bits(std::uint64_t rays) {
   const auto log2 = static_cast<std::uint32_t>(std::bit_width(rays));
   return std::max(log2, 6U) - 5;

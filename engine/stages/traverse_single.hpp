@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strategy `bvh`: one ray a lane through the object hierarchy, in the order the rays come.
+// Strategy `bvh`: one ray per lane through the object hierarchy, in the order the rays come.
 #pragma once
 
 #include "stages/tracer.hpp"

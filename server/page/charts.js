@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the engine measured: bars of stage times, tests a ray, tests by level, as SVG and tables.
+// What the engine measured: bars of stage times, tests per ray, tests by level, as SVG and tables.
 
 const COLOURS = ["#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#76b7b2", "#edc948", "#9c755f", "#ff9da7", "#bab0ac"];
 const KINDS = ["primary", "shadow", "reflection", "refraction"];
@@ -88,8 +88,8 @@ function testChart(jobs) {
     return [jobs.length > 1 ? `${kind}, ${label}` : kind, brief(stats.totals.rays[kind]), all ? `${((100 * sorted) / all).toFixed(0)} %` : "–",
       brief(stats.totals.tests_per_ray_by_kind?.[kind]), saved === undefined || saved === null ? "–" : `${(100 * saved).toFixed(2)} %`];
   }));
-  $("tests").replaceChildren(legend(sorts.map(([, words], i) => [words, COLOURS[i]])), bars(rows, brief, "Intersection tests a ray by kind of ray"),
-    table("Tests a ray", ["rays", "how many", "sorted", "tests a ray", "saved of brute force"], body));
+  $("tests").replaceChildren(legend(sorts.map(([, words], i) => [words, COLOURS[i]])), bars(rows, brief, "Intersection tests per ray by kind of ray"),
+    table("Tests per ray", ["rays", "how many", "sorted", "tests per ray", "saved of brute force"], body));
 }
 
 /** A table in a box that scrolls by itself, by keyboard too. */

@@ -148,7 +148,7 @@ SHEAF_CONST NODE_BOXES = 4u;
 SHEAF_CONST NODE_CHILD = 16u;
 SHEAF_CONST CHILD_EMPTY = 0xFFFFFFFFu;
 SHEAF_CONST CHILD_LEAF = 0x80000000u;  // bits 27..30 count − 1, bits 0..26 first triangle
-// One entry a level: the node's children still to visit; two trees of MAX_LEVELS each.
+// One entry per level: the node's children still to visit; two trees of MAX_LEVELS each.
 SHEAF_CONST STACK_SIZE = 32u;
 SHEAF_CONST MAX_NODES = 1u << 24;     // a stack entry holds a node and a mask of eight children
 

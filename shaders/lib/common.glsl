@@ -31,7 +31,7 @@ uint global_group() {
 }
 
 // Place in the workgroup, whose size the device's subgroups divide. A CPU device finds the built-in one by dividing,
-// lane by lane: 60 cycles a subgroup, where a whole kernel takes a thousand.
+// lane by lane: 60 cycles per subgroup, where a whole kernel takes a thousand.
 uint local_index() {
   return WORKERS > 0u ? gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID : gl_LocalInvocationID.x;
 }

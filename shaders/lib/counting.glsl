@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Counts of tests: 64-bit sums a kind, and (for the `tests` layer) a sum a pixel. Without COUNTED they cost nothing.
+// Counts of tests: 64-bit sums per kind, and (for the `tests` layer) a sum per pixel. Without COUNTED they cost
+// nothing.
 #ifndef SHEAF_COUNTING_GLSL
 #define SHEAF_COUNTING_GLSL
 #extension GL_KHR_shader_subgroup_arithmetic : require

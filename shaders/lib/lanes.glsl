@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Exchanges within a subgroup of LANES, all of them active. Measured on llvmpipe: with 8 lanes a shuffle is one
-// permutation; with 16 it goes lane by lane through memory, as the built-in reductions always do (15 cycles a lane),
+// permutation; with 16 it goes lane by lane through memory, as the built-in reductions always do (15 cycles per lane),
 // but one lane's value is handed round in two instructions. So reductions there are three permutations, or all lanes'
 // values in turn.
 #ifndef SHEAF_LANES_GLSL
@@ -62,7 +62,7 @@ vec3 max_lanes(vec3 x) { return vec3(max_lanes(x.x), max_lanes(x.y), max_lanes(x
 vec3 min_lanes(vec3 x) { return -max_lanes(-x); }
 vec3 sum_lanes(vec3 x) { return vec3(sum_lanes(x.x), sum_lanes(x.y), sum_lanes(x.z)); }
 
-// A bit a lane, of the first 32.
+// A bit per lane, of the first 32.
 bool has_ballot() { return !PERMUTED && !IN_TURN; }
 uint lanes_where(bool b, uint count) {
   return has_ballot() ? subgroupBallot(b).x : or_lanes(b ? 1u << gl_SubgroupInvocationID : 0u, count);

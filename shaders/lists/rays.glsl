@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A list: rays in slots, their hits, and an order (slot numbers), each known by its address, for no descriptor's bounds
-// to be checked (memory.glsl). Rays are read two words a load. First come the parts of `frame.capacity` rays that
+// to be checked (memory.glsl). Rays are read two words per load. First come the parts of `frame.capacity` rays that
 // tracers read, RAY_PART words each, then as many of what the rays are for, then the slots' pixels, one word each:
 // compaction asks for nothing else.
 #ifndef SHEAF_RAYS_GLSL

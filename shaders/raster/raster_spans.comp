@@ -203,7 +203,7 @@ void test_rectangle(Outline o, Corners corners, uint triangle) {
 
 #define FROM(value) OF_LANE(value, from)
 
-// All lanes along the spans of one lane's triangle: first a row a lane, then a sample a lane.
+// All lanes along the spans of one lane's triangle: first a row per lane, then a sample per lane.
 void test_spans(uint from, Outline mine, Corners own, uint own_triangle) {
   Outline o = Outline(FROM(mine.lo), FROM(mine.hi), FROM(mine.a), FROM(mine.b), FROM(mine.c), FROM(mine.slack),
                       FROM(mine.front), FROM(mine.back), FROM(mine.nearest), FROM(mine.inverse));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all lanes of a subgroup want alike is loaded once, a pair of words a lane, or two where there are but four
+// What all lanes of a subgroup want alike is loaded once, a pair of words per lane, or two where there are but four
 // lanes, and handed round.
 #ifndef SHEAF_LOAD_UNIFORM_GLSL
 #define SHEAF_LOAD_UNIFORM_GLSL

@@ -98,7 +98,7 @@ def swing(axis: int, angles) -> np.ndarray:
 
 
 def walk(nodes: list[int], phase: float) -> list[tuple]:
-    """A step a second, of eight keys."""
+    """A step per second, of eight keys."""
     times = np.linspace(0, 1, 9)
     step = np.sin(2 * np.pi * times + phase)
     moves = {

@@ -58,7 +58,9 @@ class Run:
     seconds: float
     peak_mib: float  # of the process; on a CPU device that includes what is on the device
     others: float  # share of the machine's time that other programs took meanwhile
-    cpu: float | None  # ms of CPU time a frame, all cores together; None where the device is no CPU, or frames too few
+    cpu: (
+        float | None
+    )  # ms of CPU time per frame, all cores together; None where the device is no CPU, or frames too few
     frames: list[Frame] = field(default_factory=list)
 
 

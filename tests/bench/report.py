@@ -118,7 +118,7 @@ def count_lines(where: str, counted: dict[str, Any], meshes: int) -> Iterator[Li
         yield Line("hybrid fewer than rsh, all tests", where, saved, "≥", 0.99)
     a_ray = triangles_a_ray(counted, "hybrid")
     if a_ray is not None:
-        yield Line("ray-triangle tests a ray, hybrid", where, a_ray, "<", 12)
+        yield Line("ray-triangle tests per ray, hybrid", where, a_ray, "<", 12)
 
 
 def across_lines(depth: str, results: dict[str, Any]) -> Iterator[Line]:
@@ -153,7 +153,7 @@ def memory_lines(depth: str, results: dict[str, Any]) -> Iterator[Line]:
 
 
 def sweep_lines(sweeps: dict[str, Any]) -> Iterator[Line]:
-    """Time a ray over nearly two decades of rays, and a job's wall time."""
+    """Time per ray over nearly two decades of rays, and a job's wall time."""
     if "linearity" in sweeps:
         points = sweeps["linearity"]
 
@@ -163,7 +163,7 @@ def sweep_lines(sweeps: dict[str, Any]) -> Iterator[Line]:
 
         where = f"whitted, {points[0]['rays'] / 1e6:.2f} to {points[-1]['rays'] / 1e6:.1f} M rays"
         loud = any(p["others"] > DISTURBED for p in points)
-        yield Line("most / least time a ray", where, extremes("wall_ms"), "≤", 1.15, extremes("cpu_ms") or None, loud)
+        yield Line("most / least time per ray", where, extremes("wall_ms"), "≤", 1.15, extremes("cpu_ms") or None, loud)
     if "job" in sweeps:
         where = f"whitted 320x180, {sweeps['job']['frames']} frames"
         yield Line("wall time outside device stages", where, sweeps["job"]["outside"], "<", 0.05)

@@ -10,7 +10,7 @@ from typing import Any
 from engine import Engine
 from measure import calmest, prepare, size_text
 
-SWEEP_SIZE = (352, 198)  # with depth 4, a quarter of a million rays of the animation at one sample a pixel
+SWEEP_SIZE = (352, 198)  # with depth 4, a quarter of a million rays of the animation at one sample per pixel
 SAMPLES = (1, 4, 16, 64)
 JOB_FRAMES = 240
 

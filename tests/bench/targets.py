@@ -40,7 +40,7 @@ def row(name: str, stats: dict[str, Any], aim: str) -> None:
     tests, rays = stats["totals"]["tests_per_ray"], sum(frame["rays"].values())
     memory = f"{frame['peak_device_mib']:.0f} MiB"
     print(f"{name:34} {frame['wall_ms'] / 1000:6.2f} s  (aim {aim})  {rays / 1e6:.2f} M rays, {memory}")
-    print(f"{'':34} {', '.join(f'{stage} {ms:.0f}' for stage, ms in most)} ms; tests a ray {json.dumps(tests)}")
+    print(f"{'':34} {', '.join(f'{stage} {ms:.0f}' for stage, ms in most)} ms; tests per ray {json.dumps(tests)}")
 
 
 def main() -> None:

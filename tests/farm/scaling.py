@@ -6,7 +6,7 @@
     tests/farm/scaling.py --pace 0.5 --workers 1,4,16,32 --frames 4 --bytes 8000000  a worker that only waits, as for a
                                                                                      device; frames are a worker's share
 
-Prints a table; `ms a frame` is the processor time of scheduler and client, which are one process here.
+Prints a table; `ms per frame` is the processor time of scheduler and client, which are one process here.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def main() -> None:
             pathlib.Path(program).write_text(WAITING.format(python=sys.executable, pace=given.pace, bytes=given.bytes))
             program.chmod(0o755)
         first: Row | None = None
-        print("| workers | frames | seconds | frames a second | of one worker's, times | ms a frame |")
+        print("| workers | frames | seconds | frames per second | of one worker's, times | ms per frame |")
         print("| --- | --- | --- | --- | --- | --- |")
         for workers in map(int, given.workers.split(",")):
             row = measure(given, workers, program, folder)

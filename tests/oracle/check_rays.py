@@ -50,7 +50,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--strategies", default="hybrid,bvh", help="that take turns (default hybrid,bvh)")
     parser.add_argument("--size", default="320x180", help="of a frame; larger for many rays (default 320x180)")
     parser.add_argument("--depth", type=int, default=6)
-    parser.add_argument("--pairs", type=float, default=5e6, help="brute-force tests a batch, for samples (default 5e6)")
+    parser.add_argument(
+        "--pairs", type=float, default=5e6, help="brute-force tests per batch, for samples (default 5e6)"
+    )
     parser.add_argument("--json", type=pathlib.Path, help="all counts, and every disagreement that was listed")
     parser.add_argument("--work", type=pathlib.Path, help="folder for a slice's dump (default: a temporary one)")
     parser.add_argument("--list", action="store_true", help="name the scenes and stop")

@@ -33,7 +33,7 @@ def test_a_scene_is_sent_watched_and_measured(visit: Visit) -> None:
     expect(page.locator("#submit")).to_be_disabled()
     page.set_input_files("#files", SCENES / "whitted.glb")
     expect(page.locator("#scene-facts")).to_contain_text("6 meshes")
-    expect(page.locator("[name=frames]")).to_have_value("0-95")  # 4 s at 24 frames a second
+    expect(page.locator("[name=frames]")).to_have_value("0-95")  # 4 s at 24 frames per second
     assert page.locator("[name=animation] option").all_text_contents()[2:] == ["whitted"]
     send(page, SCENES / "whitted.glb")
     expect(page.locator("#job-title")).to_have_text("whitted.glb")

@@ -42,7 +42,7 @@ def test_turntable(sheaf):
 
 
 def test_look_at_with_focal_lengths(sheaf):
-    """24000/1001 frames a second; half way between keys at 0 and 2 s; 35 mm and 28 mm over a sensor 20.25 mm high."""
+    """24000/1001 frames per second; half way between keys at 0 and 2 s; 35 mm and 28 mm over a sensor 20.25 mm high."""
     run = sheaf.render(
         "whitted", "--camera", CAMERAS / "whitted_look_at.json", "--fps", 1, "--frames", "0,1,2", size="32x18"
     )

@@ -58,7 +58,7 @@ def test_every_strategy_gives_the_same_pixels(sheaf, strategies, scene):
 
 @pytest.mark.parametrize("scene", ["whitted", "cornell"])
 def test_deeper_finer_and_more_samples(sheaf, strategies, scene):
-    """Two samples a pixel, eight generations, every ray followed: long lists, deep media."""
+    """Two samples per pixel, eight generations, every ray followed: long lists, deep media."""
     names = ("bvh", "hybrid", "hybrid sorted", "hybrid unsorted", "crsh", "frustum", "classify")
     few = {name: strategies[name] for name in names}
     pictures = render_all(sheaf, scene, few, "--spp", 2, "--depth", 8, "--cutoff", 0, size="50x31")

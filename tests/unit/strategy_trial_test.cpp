@@ -10,7 +10,7 @@
 namespace sheaf {
 namespace {
 
-struct Costs {  // ms a batch
+struct Costs {  // ms per batch
   double bvh, hybrid;
 };
 

@@ -106,7 +106,7 @@ class CameraPath:
 
     Attributes:
         keys: at least one.
-        fps: frames a second, or a fraction such as "24000/1001"; None leaves it to the render settings.
+        fps: frames per second, or a fraction such as "24000/1001"; None leaves it to the render settings.
         interpolation: between keys.
         loop: whether the path begins again after its last key.
         fov_axis: which side of the image `fov_degrees` spans.
@@ -159,7 +159,7 @@ class CameraPath:
             radius: of the circle, metres.
             height: of the camera above the point, metres.
             seconds: length; rounded to whole frames.
-            fps: frames a second.
+            fps: frames per second.
             fov_degrees: field of view, vertical.
             revolutions: turns in all; may be a fraction or negative.
             start_degrees: angle at time 0.

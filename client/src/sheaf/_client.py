@@ -109,7 +109,7 @@ class Client:
 
         Args:
             state: only those in this state.
-            page_size: jobs a request; the service's default where not given.
+            page_size: jobs per request; the service's default where not given.
         """
         cursor: str | None = None
         while True:

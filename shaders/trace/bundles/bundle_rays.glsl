@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays that a subgroup carries through a scene together, up to VECTORS vectors of LANES rays each. At a leaf the lanes
 // are first vectors (a bound of each against the leaf's box), then the rays of the vectors that enter. Nodes and
-// triangles are loaded once for all rays, a pair of words a lane.
+// triangles are loaded once for all rays, a pair of words per lane.
 #ifndef SHEAF_BUNDLE_RAYS_GLSL
 #define SHEAF_BUNDLE_RAYS_GLSL
 layout(constant_id = SPEC_LANES) const uint LANES = 8;    // of a subgroup, which is the workgroup

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What walks of the object hierarchy share, one ray a lane or a bundle a subgroup: depth first, a stack entry a level.
+// What walks of the object hierarchy share, one ray per lane or a bundle per subgroup: depth first, a stack entry per
+// level.
 #ifndef SHEAF_VISIT_GLSL
 #define SHEAF_VISIT_GLSL
 #include "scene/node.glsl"

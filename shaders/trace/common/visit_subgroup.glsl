@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The walk of visit.glsl where all lanes of a subgroup go the same way: the stack is spread over them, an entry a lane,
-// and so are the children of the node at work. To pick one is an exchange, where a load or a store goes lane by lane on
-// a CPU device.
+// The walk of visit.glsl where all lanes of a subgroup go the same way: the stack is spread over them, an entry per
+// lane, and so are the children of the node at work. To pick one is an exchange, where a load or a store goes lane by
+// lane on a CPU device.
 #ifndef SHEAF_VISIT_SUBGROUP_GLSL
 #define SHEAF_VISIT_SUBGROUP_GLSL
 const uint STACK_ROWS = (STACK_SIZE + LANES - 1u) / LANES;

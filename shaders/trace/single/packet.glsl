@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A packet: the rays of a subgroup, a ray a lane, that walk the object hierarchy together while they keep together.
-// Nodes and triangles are loaded once for all, a pair of words a lane, and a node's boxes are decoded at once, a box a
-// lane; only the tests are each ray's own. On a CPU device a step costs less than half of what it costs where each lane
-// has a node of its own (single_ray.glsl), so it may enter nodes that few of its rays enter, and still be ahead. Where
-// too few do, the rays go on alone.
-//
-// All lanes of the subgroup are active throughout; one without a ray has a farthest hit of −∞.
+// A packet: the rays of a subgroup, a ray per lane, that walk the object hierarchy together while they keep together.
+// Nodes and triangles are loaded once for all, a pair of words per lane, and a node's boxes are decoded at once, a box
+// a lane; only the tests are each ray's own. On a CPU device a step costs less than half of what it costs where each
+// lane has a node of its own (single_ray.glsl), so it may enter nodes that few of its rays enter, and still be ahead.
+// Where too few do, the rays go on alone. All lanes of the subgroup are active throughout; one without a ray has a
+// farthest hit of −∞.
 #ifndef SHEAF_PACKET_GLSL
 #define SHEAF_PACKET_GLSL
 #include "lib/lanes.glsl"

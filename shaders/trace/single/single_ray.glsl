@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One ray a lane through the object hierarchy, depth first, nearer children first. Exact: see triangle.glsl.
+// One ray per lane through the object hierarchy, depth first, nearer children first. Exact: see triangle.glsl.
 //
 // On a CPU device an `if` is passed over only where no lane takes it, and a loop runs until its last lane is done. So
 // the walk is two inner loops, one that descends until every lane has a leaf and one that tests leaves' triangles; and

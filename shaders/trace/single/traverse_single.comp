@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray a lane, or
+// Traverse and intersect for `bvh`, and for what `hybrid` finds too wide to walk as a bundle: one ray per lane, or
 // (PACKETS) first by the packet.
 #define COMPUTE
 #include "lib/common.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A batch of dumped rays through Embree: one ray a call, or packets of 16, on all cores.
+// A batch of dumped rays through Embree: one ray per call, or packets of 16, on all cores.
 #pragma once
 
 #include <span>

@@ -8,7 +8,7 @@ Nothing here talks to a cluster: it is told what happened and says what to do, s
 - Where a chunk fails, the frames that are whole by then count. The first of the others was being rendered: it is to
   blame, and is tried again alone; the rest goes back to the queue.
 - What is bad about the input (exit codes 2, 3, 5) is so on every machine and is not tried again. All else (device lost,
-  disk full, killed, timed out) is, `retries` times a frame.
+  disk full, killed, timed out) is, `retries` times per frame.
 - A chunk that is far later than its like gets a copy on another worker; the first to be done counts.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The evaluation that the published algorithm asks for: rays a second, and how many tests sorting and rasterising save.
+"""The evaluation that the published algorithm asks for: rays per second, and how many tests sorting and rasterising save.
 
 Under the same picture: every strategy finds the same hits, so that only the way to them differs.
 """

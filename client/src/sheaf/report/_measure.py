@@ -2,7 +2,7 @@
 """Renders a point and says what it cost: counts in one run, times in others, so that neither disturbs the other.
 
 A scene that moves is timed over frames that lie a microsecond apart, in one process, whose first frame does not count.
-Of a scene that stands still the engine renders one frame and writes it again; it is timed by a process a run, of which
+Of a scene that stands still the engine renders one frame and writes it again; it is timed by a process per run, of which
 the first does not count.
 """
 
@@ -28,7 +28,7 @@ from ._plan import Point, StudyOptions
 
 KINDS = ("primary", "shadow", "reflection", "refraction")
 MOMENTS_A_SECOND = 1_000_000
-"""Frames a second while timing: neighbours show the same, yet each is rendered."""
+"""Frames per second while timing: neighbours show the same, yet each is rendered."""
 
 REPEAT_SECONDS = 20.0
 """About what the repeats of a point may take: a slow one is timed less often, but at least once."""

@@ -124,7 +124,7 @@ def _ways(scene: SceneStudy) -> str:
         row: list[Cell | str] = [trial.point.label, *_times(trial), number(trial.rays_per_second, ",.0f")]
         body.append([*row, number(trial.all_tests, ",d"), _rate(trial.all_tests, rays), *rates, number(saved, ".2%")])
     head = ["settings", "ms", "spread", "rays/s", "tests", "tests/ray", *KINDS, "saved of brute force"]
-    return table("Rays a second, and tests a ray by kind; the picture is the same", head, body)
+    return table("Rays per second, and tests per ray by kind; the picture is the same", head, body)
 
 
 def _savings(scene: SceneStudy) -> str:

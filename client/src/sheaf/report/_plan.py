@@ -34,14 +34,14 @@ class StudyOptions:
 
     Attributes:
         size: of the pictures.
-        frame: the frame that is rendered, at `fps` frames a second.
+        frame: the frame that is rendered, at `fps` frames per second.
         fps: see `frame`.
-        reference_spp: samples a pixel of the reference, which is rendered in double precision.
+        reference_spp: samples per pixel of the reference, which is rendered in double precision.
         reference_depth: generations of the reference; its cutoff is 0.
         repeats: timed runs of a point, beside a first one that does not count.
         minutes: when to stop beginning new measurements; what is left over is listed.
         point_seconds: when to end a run that takes too long.
-        spp: samples a pixel to try.
+        spp: samples per pixel to try.
         adaptive: errors to try with adaptive samples, of at most 256.
         depth: generations to try.
         cutoff: least weights to try.

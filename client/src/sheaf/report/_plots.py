@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The plots of the strategies: rays a second, tests a ray, stages, and tests by level of the rays' hierarchy."""
+"""The plots of the strategies: rays per second, tests per ray, stages, and tests by level of the rays' hierarchy."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ def plots(scene: SceneStudy) -> list[Plot]:
         made.append(Plot("error-tests", "Error against intersection tests", (9.2, 6.2), scatter(scene, "tests")))
     if timed:
         high = 1.1 + 0.3 * len(timed)
-        made.append(Plot("rays-per-second", "Rays a second", (8.2, high), _bars(timed)))
+        made.append(Plot("rays-per-second", "Rays per second", (8.2, high), _bars(timed)))
         made.append(Plot("stages", "Device time by stage", (8.2, high + 0.5), _stages(timed)))
     counted = [trial for trial in scene.strategies if trial.all_tests]
     if counted:
         made.append(
-            Plot("tests-per-ray", "Tests a ray, by kind of ray", (8.2, 1.3 + 0.3 * len(counted)), _dots(counted))
+            Plot("tests-per-ray", "Tests per ray, by kind of ray", (8.2, 1.3 + 0.3 * len(counted)), _dots(counted))
         )
     if any(has_levels(trial) for trial in counted):
         made.append(Plot("tests-by-level", "Tests by level of the rays' hierarchy", (9.2, 3.4), _levels(counted)))
@@ -123,7 +123,7 @@ def _dots(trials: list[Trial]) -> Callable[[Figure, Theme], None]:
         log_ticks(axes.xaxis)
         axes.grid(axis="x", which="major")
         rows(axes, [trial.point.label for trial in ordered])
-        axes.set_xlabel("intersection tests a ray (a rasterised camera ray costs none)")
+        axes.set_xlabel("intersection tests per ray (a rasterised camera ray costs none)")
         figure.legend(loc="outside upper left", ncols=4)
 
     return draw

@@ -28,8 +28,8 @@ def _of_scene(scene: SceneStudy) -> list[str]:
         return [f"{name}: {escaped(scene.failure or 'nothing was measured')}."]
     rate = short(fastest.rays_per_second or 0)
     lines = [
-        f"{name}: <strong>{escaped(fastest.point.label)}</strong> is fastest, {fastest.median_ms:.0f} ms a frame, "
-        f"{rate} rays a second."
+        f"{name}: <strong>{escaped(fastest.point.label)}</strong> is fastest, {fastest.median_ms:.0f} ms per frame, "
+        f"{rate} rays per second."
     ]
     parts = []
     for saving in scene.savings:
@@ -62,8 +62,8 @@ def method(study: Study) -> list[str]:
         f"Machine: {escaped(machine['processor'])}, {machine['cores']} cores{memory}; {escaped(machine['system'])}.",
         f"Device: {escaped(device.get('name', 'unknown'))}; driver {escaped(device.get('driver', 'unknown'))}.",
         "Versions: " + ", ".join(f"{escaped(name)} {escaped(text)}" for name, text in study.versions.items()) + ".",
-        f"Pictures of {escaped(options.size)}, frame {options.frame} at {options.fps:g} frames a second. Reference: "
-        f"<code>--strategy reference</code>, double precision, {options.reference_spp} samples a pixel, depth "
+        f"Pictures of {escaped(options.size)}, frame {options.frame} at {options.fps:g} frames per second. Reference: "
+        f"<code>--strategy reference</code>, double precision, {options.reference_spp} samples per pixel, depth "
         f"{options.reference_depth}, cutoff 0. Colours are stored in half precision, so an RMSE near 10⁻⁴ of the "
         "brightness is as good as none.",
         f"Times: wall clock of a frame, the median of {options.repeats} after one that does not count; whiskers are "
