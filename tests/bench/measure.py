@@ -64,7 +64,7 @@ def prepare(case: Case, cache: Path, depth: int) -> Scene:
 def probe(engine: Engine, scene: Scene, strategy: str, settings: Settings, load_seconds: float) -> str | None:
     """Why a strategy is left out: its frame, predicted from a small one, would take longer than patience allows.
 
-    A strategy whose packets are few and wide in a small picture is predicted too long a frame: a larger one has the say,
+    A strategy whose packets are few and wide in a small picture is predicted too long a frame: a larger one decides,
     while it takes no longer than a quarter of that.
     """
     width, height = PROBE_SIZE

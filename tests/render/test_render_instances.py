@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`--instances shared`: triangles transformed when they are read. The same bits as copied ones, a tenth of the memory."""
+"""`--instances shared`: triangles transformed when they are read. The bits of copied ones, a tenth of the memory."""
 
 import filecmp
 

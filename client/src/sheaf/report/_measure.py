@@ -2,8 +2,8 @@
 """Renders a point and says what it cost: counts in one run, times in others, so that neither disturbs the other.
 
 A scene that moves is timed over frames that lie a microsecond apart, in one process, whose first frame does not count.
-Of a scene that stands still the engine renders one frame and writes it again; it is timed by a process per run, of which
-the first does not count.
+Of a scene that stands still the engine renders one frame and writes it again; it is timed by a process per run, the
+first of which does not count.
 """
 
 from __future__ import annotations
