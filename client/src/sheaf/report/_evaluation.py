@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The evaluation that the published algorithm asks for.
 
-Rays per second, and how many tests sorting and rasterising save. Under the same picture: every strategy finds the same hits, so that only the way to them differs.
+Rays per second, and how many tests sorting and rasterising save. Under the same picture: every strategy finds the same
+hits, so that only the way to them differs.
 """
 
 from __future__ import annotations
