@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
+#include "device_data/features.hpp"
 #include "frame/camera_source.hpp"
-#include "frame/features.hpp"
 #include "scene/gltf_loader.hpp"
 #include "scene/pose.hpp"
 

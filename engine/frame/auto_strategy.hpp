@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "frame/features.hpp"
+#include "device_data/features.hpp"
 #include "frame/strategy_trial.hpp"
 #include "vulkan/device.hpp"
 

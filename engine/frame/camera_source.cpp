@@ -7,8 +7,8 @@
 
 #include "core/error.hpp"
 #include "core/quote.hpp"
+#include "core/sha256.hpp"
 #include "frame/scene_bounds.hpp"
-#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -72,7 +72,7 @@ std::string CameraSource::identity() const {
     numbers({k.time, k.position.x, k.position.y, k.position.z, k.rotation.x, k.rotation.y, k.rotation.z, k.rotation.w,
              k.orthographic ? k.ortho_height : k.fov, k.orthographic ? 1.0 : 0.0, k.near, k.far});
   const std::string all = text.str();
-  return "path " + sha256_hex({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
+  return "path " + sha256_of(all);
 }
 
 CameraView CameraSource::at(const Pose& pose, double time_s) const {

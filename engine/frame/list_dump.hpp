@@ -2,9 +2,9 @@
 // Reads a traced list back for `--dump`.
 #pragma once
 
-#include "frame/device_scene.hpp"
+#include "device_data/device_scene.hpp"
+#include "device_data/ray_lists.hpp"
 #include "frame/dump_writer.hpp"
-#include "frame/ray_lists.hpp"
 #include "vulkan/kernel.hpp"
 #include "vulkan/recorder.hpp"
 

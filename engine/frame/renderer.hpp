@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "device_data/device_scene.hpp"
+#include "device_data/ray_lists.hpp"
 #include "frame/auto_strategy.hpp"
-#include "frame/device_scene.hpp"
 #include "frame/list_dump.hpp"
-#include "frame/ray_lists.hpp"
 #include "output/exr_writer.hpp"
 #include "output/stats.hpp"
 #include "sampling/adaptive_pixels.hpp"

@@ -10,8 +10,8 @@
 
 #include "core/error.hpp"
 #include "core/quote.hpp"
+#include "core/sha256.hpp"
 #include "scene/data_uri.hpp"
-#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -43,7 +43,7 @@ SceneFolder::SceneFolder(const std::string& scene_path, std::uint64_t byte_budge
 
 std::vector<std::uint8_t> SceneFolder::read_scene() {
   std::vector<std::uint8_t> bytes = read_bytes(scene_path_, std::numeric_limits<std::uint64_t>::max());
-  scene_sha256_ = sha256_hex(bytes);
+  scene_sha256_ = sha256_of(bytes);
   return bytes;
 }
 
@@ -90,7 +90,7 @@ Located SceneFolder::locate_name(const std::string& name, const std::string& sho
 
 std::vector<std::uint8_t> SceneFolder::read(const fs::path& path, std::uint64_t most) {
   std::vector<std::uint8_t> bytes = read_bytes(path, most);
-  sha256_of_[path.lexically_relative(root_).generic_string()] = sha256_hex(bytes);
+  sha256_of_[path.lexically_relative(root_).generic_string()] = sha256_of(bytes);
   return bytes;
 }
 
@@ -98,7 +98,7 @@ std::string SceneFolder::sha256() const {
   if (sha256_of_.empty()) return scene_sha256_;
   std::string all = scene_sha256_ + "\n";
   for (const auto& [name, hash] : sha256_of_) all += hash + " " + name + "\n";
-  return sha256_hex({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
+  return sha256_of(all);
 }
 
 std::vector<std::uint8_t> SceneFolder::read_bytes(const fs::path& path, std::uint64_t most) {

@@ -2,7 +2,7 @@
 // Animate (algorithm 1): morphing and skinning, then world-space triangles, of what moved.
 #pragma once
 
-#include "frame/device_scene.hpp"
+#include "device_data/device_scene.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

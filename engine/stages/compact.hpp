@@ -2,7 +2,7 @@
 // Compact (R 4.4): slots that hold a ray become a list without gaps, in slot order.
 #pragma once
 
-#include "frame/ray_lists.hpp"
+#include "device_data/ray_lists.hpp"
 #include "stages/scan.hpp"
 
 namespace sheaf {

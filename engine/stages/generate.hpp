@@ -2,7 +2,7 @@
 // Generate (algorithm 3): the camera's rays, and from the hits of one generation the rays of the next.
 #pragma once
 
-#include "frame/ray_lists.hpp"
+#include "device_data/ray_lists.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

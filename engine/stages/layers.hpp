@@ -2,10 +2,10 @@
 // Surface layers (`--aov`): what the camera's rays of sample 0 saw first.
 #pragma once
 
-#include "frame/device_scene.hpp"
-#include "frame/ray_lists.hpp"
+#include "device_data/device_scene.hpp"
+#include "device_data/ray_lists.hpp"
+#include "device_data/tile.hpp"
 #include "output/exr_writer.hpp"
-#include "stages/raster.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

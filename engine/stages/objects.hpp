@@ -2,7 +2,7 @@
 // Objects (algorithm 7): the object hierarchy's boxes, refitted from the leaves where something moved.
 #pragma once
 
-#include "frame/device_scene.hpp"
+#include "device_data/device_scene.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

@@ -3,17 +3,13 @@
 // CPU devices a kernel does (raster_spans).
 #pragma once
 
-#include "frame/device_scene.hpp"
-#include "frame/ray_lists.hpp"
+#include "device_data/device_scene.hpp"
+#include "device_data/ray_lists.hpp"
+#include "device_data/tile.hpp"
 #include "stages/raster_spans.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {
-
-struct Tile {
-  std::uint32_t x = 0, y = 0, width = 0, height = 0;
-  [[nodiscard]] std::uint32_t pixels() const { return width * height; }
-};
 
 class Raster {
  public:

@@ -2,7 +2,7 @@
 // Raster on CPU devices: a triangle per lane, larger ones along their spans, by the test that traced rays make.
 #pragma once
 
-#include "frame/features.hpp"
+#include "device_data/features.hpp"
 #include "vulkan/recorder.hpp"
 
 namespace sheaf {

@@ -2,7 +2,7 @@
 // Resolve: from fixed-point sums to the mean of a pixel's samples.
 #pragma once
 
-#include "frame/ray_lists.hpp"
+#include "device_data/ray_lists.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

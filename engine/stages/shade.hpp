@@ -2,7 +2,7 @@
 // Shade: the light of the shadow rays that got through joins its pixel.
 #pragma once
 
-#include "frame/ray_lists.hpp"
+#include "device_data/ray_lists.hpp"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "frame/device_scene.hpp"
-#include "frame/ray_lists.hpp"
+#include "device_data/device_scene.hpp"
+#include "device_data/ray_lists.hpp"
 #include "vulkan/recorder.hpp"
 
 namespace sheaf {

@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "core/error.hpp"
-#include "http/problem.hpp"
+#include "core/sha256.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
-#include "util/sha256.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "http/message.hpp"
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 

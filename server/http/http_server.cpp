@@ -13,10 +13,10 @@
 #include <cstring>
 
 #include "http/guarded.hpp"
-#include "http/problem.hpp"
 #include "http/reply_writer.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

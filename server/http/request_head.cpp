@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

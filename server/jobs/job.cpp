@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/sha256.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
-#include "util/sha256.hpp"
 
 namespace sheaf::server {
 namespace fs = std::filesystem;

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
 #include "jobs/frame_collection.hpp"
 #include "jobs/outcome.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/error.hpp"
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

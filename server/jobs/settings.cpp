@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
 #include "output/frame_range.hpp"
 #include "settings/setting_json.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

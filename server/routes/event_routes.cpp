@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <charconv>
 
-#include "http/problem.hpp"
 #include "routes/routes.hpp"
 #include "util/log.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

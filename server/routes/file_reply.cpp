@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "http/problem.hpp"
 #include "util/fd.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

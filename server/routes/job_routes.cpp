@@ -4,10 +4,10 @@
 #include <charconv>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
 #include "routes/routes.hpp"
 #include "upload/submission.hpp"
 #include "util/ids.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

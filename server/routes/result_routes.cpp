@@ -4,13 +4,13 @@
 #include <charconv>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
+#include "core/sha256.hpp"
 #include "routes/file_reply.hpp"
 #include "routes/routes.hpp"
 #include "routes/stats_table.hpp"
 #include "routes/zip_stream.hpp"
 #include "util/fd.hpp"
-#include "util/sha256.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "http/problem.hpp"
 #include "routes/contract.hpp"
 #include "routes/resources.hpp"
 #include "routes/routes.hpp"
 #include "settings/setting_json.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

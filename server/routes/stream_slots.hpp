@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 

@@ -6,8 +6,8 @@
 
 #include "core/quote.hpp"
 #include "http/message.hpp"
-#include "http/problem.hpp"
 #include "upload/safe_path.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 

@@ -9,14 +9,14 @@
 
 #include "core/file_kind.hpp"
 #include "core/quote.hpp"
-#include "http/problem.hpp"
+#include "core/sha256.hpp"
 #include "jobs/settings.hpp"
 #include "upload/content_digest.hpp"
 #include "upload/multipart.hpp"
 #include "upload/new_file.hpp"
 #include "upload/safe_path.hpp"
 #include "upload/unzip.hpp"
-#include "util/sha256.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

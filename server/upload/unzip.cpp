@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/quote.hpp"
-#include "http/problem.hpp"
 #include "upload/archive_names.hpp"
 #include "upload/new_file.hpp"
 #include "upload/safe_path.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

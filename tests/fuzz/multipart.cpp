@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "http/problem.hpp"
 #include "target.hpp"
 #include "upload/safe_path.hpp"
+#include "util/problem.hpp"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "http/body_reader.hpp"
-#include "http/problem.hpp"
 #include "http/request_head.hpp"
 #include "target.hpp"
+#include "util/problem.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sheaf;

@@ -3,8 +3,8 @@
 // take for something else.
 #include "jobs/settings.hpp"
 
-#include "http/problem.hpp"
 #include "target.hpp"
+#include "util/problem.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sheaf;

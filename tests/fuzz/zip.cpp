@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A zipped scene. Whatever it says of itself, what comes out lies in its folder and keeps the limits.
 #include "core/error.hpp"
-#include "http/problem.hpp"
 #include "target.hpp"
 #include "upload/unzip.hpp"
+#include "util/problem.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sheaf;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The drawing of the layers in docs/architecture.md is true: no file includes a header that its own folder may not use.
+"""The drawings of the layers in docs/architecture.md are true, for the includes and for the libraries' links.
 
-The allowed uses are the arrows of the document's first drawing and what follows from them transitively.
+The allowed uses are the arrows of the section's drawings and what follows from them transitively.
 """
 
 from __future__ import annotations
@@ -12,23 +12,35 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-INCLUDE = re.compile(r'^\s*#include "([a-z_/0-9]+)/[^/"]+"', re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#include "([a-z_]+)/[^"]+"', re.MULTILINE)
 
 Graph = dict[str, set[str]]
 
 
 def drawn_layers(text: str) -> Graph:
-    """The folders of the first Mermaid drawing, and for each the folders it uses directly."""
-    drawing = text.split("```mermaid", 1)[1].split("```", 1)[0]
-    names = dict(re.findall(r'(\w+)\["([a-z_/]+)', drawing))
+    """The folders that the drawings of the section "Layers" show, and for each those it uses directly."""
+    section = text.split("\n## Layers\n", 1)[1].split("\n## ", 1)[0]
+    drawings = "".join(part.split("```", 1)[0] for part in section.split("```mermaid")[1:])
+    labels = re.findall(r'(\w+)\["([a-z_/]+)', drawings)
+    names = {name: folder for name, folder in labels if (ROOT / folder).is_dir()}
     uses: Graph = {folder: set() for folder in names.values()}
-    for line in drawing.splitlines():
-        arrow = re.match(r'\s*(\w+)(?:\["[^"]*"\])? --> (\w+)', line)
-        if arrow:
-            source, target = (names.get(name, name) for name in arrow.groups())
-            uses.setdefault(source, set()).add(target)
-            uses.setdefault(target, set())
+    for source, target in re.findall(r'^\s*(\w+)(?:\["[^"]*"\])? --> (\w+)', drawings, re.MULTILINE):
+        uses[names[source]].add(names[target])
     return uses
+
+
+def linked_layers(folders: list[str]) -> Graph:
+    """What the library of each folder links, as folders."""
+    links: Graph = {}
+    for folder in folders:
+        build = (ROOT / folder / "CMakeLists.txt").read_text()
+        libraries = re.findall(rf"target_link_libraries\({library_of(folder)}\s([^)]*)\)", build)
+        links[folder] = {other for other in folders if library_of(other) in " ".join(libraries).split()}
+    return links
+
+
+def library_of(folder: str) -> str:
+    return ("sheafd_" if folder.startswith("server/") else "sheaf_") + Path(folder).name
 
 
 def closure(uses: Graph) -> Graph:
@@ -44,24 +56,21 @@ def closure(uses: Graph) -> Graph:
     return reached
 
 
-def forbidden(folder: str, text: str, allowed: set[str], folders: set[str]) -> list[str]:
-    """The folders that `text`, a file of `folder`, includes against the drawing."""
-    found = []
-    for included in INCLUDE.findall(text):
-        target = f"engine/{included}" if f"engine/{included}" in folders else included.split("/")[0]
-        if target in folders and target != folder and target not in allowed:
-            found.append(target)
-    return found
+def forbidden(text: str, allowed: set[str], folders: set[str]) -> list[str]:
+    """The folders that `text` includes and that are not allowed."""
+    found = [folder for name in INCLUDE.findall(text) for folder in {f"engine/{name}", f"server/{name}"} & folders]
+    found += ["shaders" for name in INCLUDE.findall(text) if (ROOT / "shaders" / name).is_dir()]
+    return [folder for folder in found if folder not in allowed]
 
 
 USES = drawn_layers((ROOT / "docs/architecture.md").read_text())
 REACHED = closure(USES)
-ENGINE = sorted(folder for folder in USES if folder.startswith("engine/"))
+FOLDERS = sorted(USES)
 
 
-def test_every_folder_of_the_engine_is_drawn() -> None:
-    folders = {f"engine/{path.name}" for path in (ROOT / "engine").iterdir() if path.is_dir()}
-    assert folders == set(ENGINE)
+def test_every_folder_with_cpp_is_drawn() -> None:
+    files = [path for top in ("engine", "server") for path in (ROOT / top).rglob("*.[ch]pp")]
+    assert {str(path.parent.relative_to(ROOT)) for path in files} | {"shaders"} == set(FOLDERS) - {"client"}
 
 
 def test_no_layers_use_each_other() -> None:
@@ -69,14 +78,21 @@ def test_no_layers_use_each_other() -> None:
         assert not any(folder in REACHED[used] for used in USES[folder]), f"{folder} takes part in a cycle"
 
 
-@pytest.mark.parametrize("folder", ENGINE)
+@pytest.mark.parametrize("folder", FOLDERS)
 def test_includes_follow_the_drawing(folder: str) -> None:
-    for path in sorted((ROOT / folder).iterdir()):
-        if path.suffix in {".cpp", ".hpp"}:
-            against = forbidden(folder, path.read_text(), REACHED[folder], set(USES))
-            assert not against, f"{path.relative_to(ROOT)} includes {against}, which {folder} may not use"
+    for path in sorted((ROOT / folder).glob("*.[ch]pp")):
+        against = forbidden(path.read_text(), REACHED[folder], set(USES))
+        assert not against, f"{path.relative_to(ROOT)} includes {against}, which {folder} may not use"
+
+
+def test_libraries_link_what_is_drawn() -> None:
+    built = [folder for folder in FOLDERS if folder != "client"]
+    linked = closure(linked_layers(built))
+    for folder in built:
+        assert linked[folder] == REACHED[folder], folder
 
 
 def test_a_forbidden_include_is_found() -> None:
-    text = '#include "frame/renderer.hpp"\n#include "vulkan/device.hpp"\n#include <vector>\n'
-    assert forbidden("engine/stages", text, REACHED["engine/stages"], set(USES)) == ["engine/frame"]
+    included = ['"frame/renderer.hpp"', '"vulkan/device.hpp"', '"http/router.hpp"', "<vector>"]
+    text = "".join(f"#include {name}\n" for name in included)
+    assert forbidden(text, REACHED["engine/stages"], set(USES)) == ["engine/frame", "server/http"]

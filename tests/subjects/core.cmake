@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-sheaf_test(quote_test sheaf_options)
+sheaf_test(quote_test sheaf_core)

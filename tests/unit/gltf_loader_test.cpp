@@ -8,8 +8,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/error.hpp"
+#include "core/sha256.hpp"
 #include "gltf_builder.hpp"
-#include "scene/sha256.hpp"
 
 namespace sheaf {
 namespace {
@@ -31,9 +31,7 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e
 }
 
 TEST(Sha256, KnownDigests) {
-  const auto digest = [](const std::string& text) {
-    return sha256_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  };
+  const auto digest = [](const std::string& text) { return sha256_of(text); };
   EXPECT_EQ(digest(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(digest("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/mip_levels.hpp"
+#include "device_data/mip_levels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "frame/features.hpp"
+#include "device_data/features.hpp"
 
 namespace sheaf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/scene_parts.hpp"
+#include "device_data/scene_parts.hpp"
 
 #include <gtest/gtest.h>
 

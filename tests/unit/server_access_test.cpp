@@ -8,8 +8,8 @@
 
 #include "access/tokens.hpp"
 #include "core/error.hpp"
-#include "http/problem.hpp"
 #include "util/ids.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "http/body_reader.hpp"
-#include "http/problem.hpp"
 #include "http/request_head.hpp"
 #include "http/router.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <thread>
 
-#include "http/problem.hpp"
 #include "jobs/outcome.hpp"
 #include "jobs/settings.hpp"
 #include "jobs/worker_events.hpp"
+#include "program/service.hpp"
 #include "routes/contract.hpp"
-#include "service.hpp"
 #include "settings/setting.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

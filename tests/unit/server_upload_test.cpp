@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "http/problem.hpp"
 #include "upload/archive_names.hpp"
 #include "upload/multipart.hpp"
 #include "upload/safe_path.hpp"
+#include "util/problem.hpp"
 
 namespace sheaf::server {
 namespace {

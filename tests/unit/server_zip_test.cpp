@@ -4,9 +4,9 @@
 
 #include <string>
 
+#include "core/sha256.hpp"
 #include "routes/zip_stream.hpp"
 #include "util/ids.hpp"
-#include "util/sha256.hpp"
 
 namespace sheaf::server {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/ray_lists.hpp"
+#include "device_data/ray_lists.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "options.hpp"
+#include "program/options.hpp"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "service.hpp"
+#include "program/service.hpp"
 
 #include <cerrno>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/material_layout.hpp"
+#include "device_data/material_layout.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "core/error.hpp"
-#include "frame/mip_levels.hpp"
-#include "frame/scene_layout.hpp"
+#include "device_data/mip_levels.hpp"
+#include "device_data/scene_layout.hpp"
 
 namespace sheaf {
 namespace {

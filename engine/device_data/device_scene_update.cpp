@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "frame/device_scene.hpp"
+#include "device_data/device_scene.hpp"
 #include "hierarchy/slot_order.hpp"
 
 namespace sheaf {

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "frame/scene_layout.hpp"
+#include "device_data/scene_layout.hpp"
 #include "scene/camera_path.hpp"
 #include "scene/pose.hpp"
 #include "vulkan/recorder.hpp"

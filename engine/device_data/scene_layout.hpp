@@ -8,8 +8,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "frame/features.hpp"
-#include "frame/scene_parts.hpp"
+#include "device_data/features.hpp"
+#include "device_data/scene_parts.hpp"
 #include "hierarchy/object_hierarchy.hpp"
 #include "interface/shared.h"
 #include "scene/scene.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/features.hpp"
+#include "device_data/features.hpp"
 
 #include <algorithm>
 #include <set>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "util/sha256.hpp"
+#include "core/sha256.hpp"
 
 #include <array>
 #include <new>
 
-namespace sheaf::server {
+namespace sheaf {
 namespace {
 
 void require(int done) {
@@ -39,4 +39,8 @@ std::string sha256_of(std::string_view bytes) {
   return hash.finish();
 }
 
-}  // namespace sheaf::server
+std::string sha256_of(std::span<const std::uint8_t> bytes) {
+  return sha256_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace sheaf

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// SHA-256 (FIPS 180-4) of data that arrives in pieces: uploads on their way to disk, frames read back in blocks.
+// SHA-256 (FIPS 180-4), of data that arrives in pieces too: uploads on their way to disk, frames read back in blocks.
 #pragma once
 
 #include <openssl/evp.h>
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
-namespace sheaf::server {
+namespace sheaf {
 
 class Sha256 {
  public:
@@ -26,5 +28,6 @@ class Sha256 {
 };
 
 [[nodiscard]] std::string sha256_of(std::string_view bytes);
+[[nodiscard]] std::string sha256_of(std::span<const std::uint8_t> bytes);
 
-}  // namespace sheaf::server
+}  // namespace sheaf

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "options.hpp"
+#include "program/options.hpp"
 
 namespace sheaf::server {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/scene_layout.hpp"
+#include "device_data/scene_layout.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/error.hpp"
-#include "frame/material_layout.hpp"
+#include "device_data/material_layout.hpp"
 #include "hierarchy/slot_order.hpp"
 #include "scene/pose.hpp"
 

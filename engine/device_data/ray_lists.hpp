@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "frame/features.hpp"
+#include "device_data/features.hpp"
 #include "vulkan/buffer.hpp"
 #include "vulkan/recorder.hpp"
 

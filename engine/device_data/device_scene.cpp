@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame/device_scene.hpp"
+#include "device_data/device_scene.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "http/problem.hpp"
+#include "util/problem.hpp"
 
 #include "core/quote.hpp"
 

@@ -12,7 +12,7 @@
 #include "access/tokens.hpp"
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
-#include "service.hpp"
+#include "program/service.hpp"
 #include "util/log.hpp"
 
 namespace {
