@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <future>
-#include <map>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "cli/commands.hpp"
+#include "cli/frame_files.hpp"
 #include "core/cpu_time.hpp"
 #include "core/error.hpp"
 #include "frame/camera_source.hpp"
@@ -18,16 +15,12 @@
 #include "frame/frame_attributes.hpp"
 #include "frame/frame_source.hpp"
 #include "output/atomic_file.hpp"
-#include "output/frame_names.hpp"
-#include "output/frame_range.hpp"
 #include "output/png_writer.hpp"
 #include "scene/gltf_loader.hpp"
-#include "settings/setting.hpp"
 
 namespace sheaf {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point begun) {
@@ -36,7 +29,7 @@ double milliseconds_since(Clock::time_point begun) {
 
 void make_folder(const std::string& path) {
   std::error_code error;
-  fs::create_directories(path, error);
+  std::filesystem::create_directories(path, error);
   if (error) throw io_error(path, error.message());
   remove_stale_parts(path);
 }
@@ -60,23 +53,14 @@ class Job {
   void write(RenderedFrame frame, const FrameRequest& request);
   void finish_writing();
   void save_stats(bool last);
-  [[nodiscard]] fs::path folder() const { return static_cast<const std::string&>(options_.out); }
-  [[nodiscard]] std::string path_of(std::int64_t number) const;
-  [[nodiscard]] FrameInputs inputs_of(std::int64_t number) const;
-  [[nodiscard]] std::string why_again(std::int64_t number) const;
-  [[nodiscard]] std::vector<std::int64_t> wanted_frames();
-  void list_inputs() const;
-  [[nodiscard]] double seconds(std::int64_t number) const { return static_cast<double>(number) / fps_; }
 
   RenderOptions& options_;
   Progress& progress_;
   Scene scene_;
   std::vector<std::uint32_t> animations_;
-  std::vector<std::int64_t> frames_;
   CameraSource camera_;
-  FrameNames names_;
   double fps_;
-  FrameInputs inputs_;  // but for number and time
+  FrameFiles files_;
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<DumpWriter> dump_;
   RunStats stats_;
@@ -91,90 +75,24 @@ Job::Job(RenderOptions& options, Progress& progress)
       progress_(progress),
       scene_(load_gltf(options.scene, options.scene_name)),
       animations_(select_animations(scene_, options.animation)),
-      frames_(parse_frames(options.frames)),
       camera_(scene_, animations_, options.camera, options.camera_node,
               static_cast<double>(options.settings.width) / options.settings.height),
-      names_(options.name.empty() ? default_name_pattern(options.scene) : options.name),
-      fps_(options.fps.value_or(camera_.fps().value_or(24.0))) {
+      fps_(options.fps.value_or(camera_.fps().value_or(24.0))),
+      files_(options, scene_, animations_, camera_, fps_) {
   if (const auto warning = compression_warning(options.compression, options.settings.layers); !warning.empty())
     progress_.warning(warning);
   for (const auto& warning : scene_.warnings) progress_.warning(options.scene + ": " + warning);
-  auto settings = settings_json(options);
-  settings["fps"] = fps_;
-  if (const std::string& name = options.scene_name; !name.empty()) settings["scene-name"] = name;
-  settings["animation"] = animations_;
-  settings["camera"] = camera_.identity();
-  for (const char* name : {"aov", "compression"}) settings[name] = find_setting(name)->access.show(options);
-  // It decides what is counted.
-  if (options.settings.layers.tests) settings["strategy"] = find_setting("strategy")->access.show(options);
-  inputs_ = {SHEAF_VERSION, scene_.sha256, settings.dump(), 0, 0};
-}
-
-std::string Job::path_of(std::int64_t number) const { return (folder() / names_.frame(number)).string(); }
-
-FrameInputs Job::inputs_of(std::int64_t number) const {
-  FrameInputs inputs = inputs_;
-  inputs.frame = number;
-  inputs.time_s = seconds(number);
-  return inputs;
-}
-
-// Why a frame that is there has to be rendered again; empty where it need not.
-std::string Job::why_again(std::int64_t number) const {
-  const std::string path = path_of(number);
-  const auto there = read_frame_inputs(path);
-  if (!there) return "not whole, or not of this program";
-  const std::string different = difference(*there, inputs_of(number));
-  if (!different.empty()) return different;
-  if (!exr_is_whole(path, options_.settings.width, options_.settings.height)) return "not whole";
-  if (options_.preview && !fs::is_regular_file(folder() / names_.preview(number))) return "no preview";
-  return {};
-}
-
-// All, or with --resume those that are not there as they would be rendered now; says which are not and why.
-std::vector<std::int64_t> Job::wanted_frames() {
-  if (!options_.resume) return frames_;
-  std::vector<std::int64_t> wanted;
-  std::map<std::string, std::size_t> reasons;
-  std::size_t again = 0;
-  for (const auto number : frames_) {
-    const bool there = fs::exists(path_of(number));
-    const std::string reason = there ? why_again(number) : "";
-    if (there && reason.empty()) continue;
-    wanted.push_back(number);
-    if (!there) continue;
-    ++again;
-    ++reasons[reason];
-  }
-  std::string text;
-  for (const auto& [reason, count] : reasons)
-    text += (text.empty() ? "" : "; ") + reason + (reasons.size() > 1 ? " (" + std::to_string(count) + ")" : "");
-  if (again > 0)
-    progress_.warning("--resume: " + std::to_string(again) + (again == 1 ? " frame that is" : " frames that are") +
-                      " there will be rendered again: " + text);
-  return wanted;
-}
-
-// One object a line, for who holds frames that this machine does not see.
-void Job::list_inputs() const {
-  for (const auto number : frames_) {
-    auto line = to_json(inputs_of(number));
-    line["file"] = names_.frame(number);
-    std::printf("%s\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
-  }
 }
 
 void Job::write(RenderedFrame frame, const FrameRequest& request) {
   const auto number = request.number;
   const auto begun = Clock::now();
-  const auto path = path_of(number);
-  const auto attributes =
-      frame_attributes(inputs_of(number), request.camera, static_cast<double>(frame.layers.width) / frame.layers.height,
-                       fps_, joined(frame.stats.strategies));
-  if (options_.preview) {
-    const auto preview = (folder() / names_.preview(number)).string();
-    write_preview(preview, frame.layers.rgba, frame.layers.width, frame.layers.height);
-  }
+  const auto path = files_.path_of(number);
+  const auto attributes = frame_attributes(files_.inputs_of(number), request.camera,
+                                           static_cast<double>(frame.layers.width) / frame.layers.height, fps_,
+                                           joined(frame.stats.strategies));
+  if (options_.preview)
+    write_preview(files_.preview_of(number), frame.layers.rgba, frame.layers.width, frame.layers.height);
   write_exr(path, frame.layers, attributes, options_.compression);
   frame.stats.stages_ms.emplace_back("write", milliseconds_since(begun));
   stopped_ += frame.stats.repeated ? 0 : frame.stats.stopped;
@@ -185,7 +103,7 @@ void Job::write(RenderedFrame frame, const FrameRequest& request) {
 FrameRequest Job::request_for(std::int64_t number) const {
   FrameRequest request;
   request.number = number;
-  request.time_s = seconds(number);
+  request.time_s = files_.seconds(number);
   request.pose = evaluate_pose(scene_, animations_, request.time_s);
   request.camera = camera_.at(request.pose, request.time_s);
   request.stop = [] { return interrupted() != 0; };
@@ -251,7 +169,7 @@ void Job::save_stats(bool last) {
 int Job::run() {
   watch_signals();
   if (options_.list_inputs) {
-    list_inputs();
+    files_.list_inputs();
     return 0;
   }
   make_folder(options_.out);
@@ -259,7 +177,7 @@ int Job::run() {
     make_folder(options_.dump);
     dump_ = std::make_unique<DumpWriter>(options_.dump);
   }
-  const std::vector<std::int64_t> wanted = wanted_frames();
+  const std::vector<std::int64_t> wanted = files_.wanted(progress_);
   progress_.start(wanted.size());
   try {
     render_all(wanted);
