@@ -37,15 +37,13 @@ constexpr auto choice_names(BackFaces) { return std::array{"hide", "show"}; }
 enum class GlassAlpha { opaque, transparent };
 constexpr auto choice_names(GlassAlpha) { return std::array{"opaque", "transparent"}; }
 
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): the same entries make fields here and the table in table.cpp
-#define PRESET(...)
-#define SETTING(...)
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): the build makes settings_fields.def from table.def
 
 /// What the renderer is told, beside scene and camera.
 struct RenderSettings : ImageSize {
-#define PICTURE(type, member, fallback, ...) type member = fallback;
+#define PICTURE(type, member, fallback) type member = fallback;
 #define RUN(...)
-#include "settings/table.def"
+#include "settings_fields.def"
 #undef PICTURE
 #undef RUN
   bool counted = true;  // whether tests are counted; what --count, --stats and --aov come to
@@ -56,14 +54,12 @@ struct RenderOptions {
   std::string scene;
   RenderSettings settings;
 #define PICTURE(...)
-#define RUN(type, member, fallback, ...) type member = fallback;
-#include "settings/table.def"
+#define RUN(type, member, fallback) type member = fallback;
+#include "settings_fields.def"
 #undef PICTURE
 #undef RUN
 };
 
-#undef PRESET
-#undef SETTING
 // NOLINTEND(cppcoreguidelines-macro-usage)
 
 }  // namespace sheaf
