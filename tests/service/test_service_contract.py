@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The contract against the live service: schemathesis asks for everything it describes, and for what it does not."""
+"""The contract against the live service: its routes, then all it describes, and more, as schemathesis asks for it."""
 
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -12,6 +14,20 @@ from service import Service, gltf
 
 SCHEMATHESIS = pathlib.Path(sys.executable).with_name("schemathesis")
 EXAMPLES = os.environ.get("SHEAF_CONTRACT_EXAMPLES", "10")  # of each operation; 200 for a long run
+
+
+def test_the_contract_names_every_route_and_setting(sheafd: Service) -> None:
+    contract = sheafd.http.get("/openapi.json").json()
+    assert contract["openapi"].startswith("3.1")
+    refs = set(re.findall(r'"#/components/([^"]+)"', json.dumps(contract)))
+    for ref in refs:
+        kind, name = ref.split("/")
+        assert name in contract["components"][kind], ref
+    for path, item in contract["paths"].items():
+        real = path.replace("{id}", "a" * 26).replace("{frame}", "0")
+        allowed = sheafd.http.options(real).headers["Allow"].split(", ")
+        described = {m.upper() for m in item if m in ("get", "post", "delete", "put", "patch")}
+        assert described == set(allowed) - {"HEAD", "OPTIONS"}, path
 
 
 @pytest.mark.parametrize(

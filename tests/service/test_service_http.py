@@ -2,16 +2,14 @@
 """The HTTP layer itself: routes and methods, hostile bytes, connections."""
 
 import json
-import pathlib
 import re
 import socket
-import subprocess
 from collections.abc import Callable
 
 import httpx
 import pytest
 
-from service import Service, check_problem, gltf, program
+from service import Service, check_problem, gltf
 
 
 def status_of(answer: bytes) -> int:
@@ -282,60 +280,9 @@ def test_connections_are_bounded(start: Callable[..., Service]) -> None:
             continue
 
 
-def test_the_contract_names_every_route_and_setting(sheafd: Service) -> None:
-    contract = sheafd.http.get("/openapi.json").json()
-    assert contract["openapi"].startswith("3.1")
-    refs = set(re.findall(r'"#/components/([^"]+)"', json.dumps(contract)))
-    for ref in refs:
-        kind, name = ref.split("/")
-        assert name in contract["components"][kind], ref
-    for path, item in contract["paths"].items():
-        real = path.replace("{id}", "a" * 26).replace("{frame}", "0")
-        allowed = sheafd.http.options(real).headers["Allow"].split(", ")
-        described = {m.upper() for m in item if m in ("get", "post", "delete", "put", "patch")}
-        assert described == set(allowed) - {"HEAD", "OPTIONS"}, path
-
-
 def test_the_page(sheafd: Service) -> None:
     reply = sheafd.http.get("/")
     assert reply.headers["Content-Type"].startswith("text/html")
     assert "<title>Sheaf</title>" in reply.text
     assert "default-src 'none'" in reply.headers["Content-Security-Policy"]
     assert not re.search(r'(src|href)="(https?:)?//', reply.text)
-
-
-def run(*options: str) -> subprocess.CompletedProcess:
-    return subprocess.run([program("sheafd"), *options], capture_output=True, text=True, timeout=60, check=False)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        ["--listen", "nowhere"],
-        ["--listen", "127.0.0.1:99999"],
-        ["--jobs", "0"],
-        ["--colour"],
-        ["--max-upload", "x"],
-        ["--listen", "[::1:80"],
-    ],
-)
-def test_bad_usage(options: list[str]) -> None:
-    ended = run(*options)
-    assert ended.returncode == 2
-    assert ended.stderr.startswith("sheafd: ")
-    assert ended.stderr.count("\n") == 1
-
-
-def test_help_version_and_io_failures(tmp_path: pathlib.Path, sheafd: Service) -> None:
-    assert "--retention" in run("--help").stdout
-    assert run("--version").stdout.startswith("sheafd ")
-    taken = run("--listen", sheafd.address, "--data", str(tmp_path / "other"))
-    assert taken.returncode == 6
-    assert "in use" in taken.stderr
-    (tmp_path / "file").write_text("")
-    assert run("--data", str(tmp_path / "file"), "--listen", "127.0.0.1:0").returncode == 6
-
-
-def test_the_port_file(start: Callable[..., Service], tmp_path: pathlib.Path) -> None:
-    service = start("--port-file", str(tmp_path / "port"))
-    assert (tmp_path / "port").read_text() == service.address + "\n"

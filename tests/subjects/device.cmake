@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Kernels against CPU references, on the device itself. Any message of the validation layer fails a test.
 set(device_tests device_scan_test device_sort_test device_hash_test device_rays_hierarchy_test device_traverse_test
-  device_frustum_test device_intersect_test device_watertight_test device_objects_test)
+  device_frustum_test device_packets_test device_intersect_test device_watertight_test device_objects_test)
 foreach(name IN LISTS device_tests)
   add_executable(${name} unit/${name}.cpp)
   target_link_libraries(${name} PRIVATE sheaf_options sheaf_core sheaf_stages GTest::gtest GTest::gtest_main)

@@ -15,7 +15,6 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <random>
 
 #include "core/choice.hpp"
 #include "exr_support.hpp"
@@ -26,41 +25,12 @@ namespace {
 using test::attributes;
 using test::contents;
 using test::error_of;
-using test::put;
+using test::full;
 using test::tiny;
 
 constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array lossless{Compression::none, Compression::rle, Compression::zips, Compression::zip,
                               Compression::piz};
-
-std::vector<float> noise(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<float> values(count);
-  for (float& value : values) value = static_cast<float>(random()) / 4e9f * 20 - 10;
-  return values;
-}
-
-// Every layer, in a size that ends in the middle of every compression's chunk.
-FrameLayers full(std::uint32_t width = 37, std::uint32_t height = 53) {
-  const std::size_t pixels = std::size_t{width} * height;
-  FrameLayers layers{width,
-                     height,
-                     noise(pixels * 4, 1),
-                     noise(pixels, 2),
-                     noise(pixels * 3, 3),
-                     noise(pixels * 3, 4),
-                     noise(pixels * 3, 5),
-                     noise(pixels * 2, 6),
-                     {},
-                     {},
-                     noise(pixels, 7)};
-  for (std::size_t i = 0; i < pixels; ++i) {
-    layers.object_id.push_back(static_cast<std::uint32_t>(i * 2654435761u));
-    layers.material_id.push_back(static_cast<std::uint32_t>(~i));
-  }
-  layers.depth[5] = inf;
-  return layers;
-}
 
 template <typename T>
 std::vector<T> channel(const std::string& path, const char* name, Imf::PixelType type) {
@@ -284,38 +254,6 @@ TEST_F(ExrWriterTest, FailuresNameTheFileAndLeaveNothing) {
     });
     EXPECT_EQ(status, 0) << room;
     EXPECT_EQ(names(), std::vector<std::string>{});
-  }
-}
-
-TEST_F(ExrWriterTest, WholeMeansEveryByteIsThere) {
-  for (const Compression compression : {Compression::none, Compression::zip, Compression::piz}) {
-    SCOPED_TRACE(name_of(compression));
-    write_exr(path("a.exr"), full(8, 40), attributes(), compression);
-    const std::string whole = contents(path("a.exr"));
-    ASSERT_TRUE(exr_is_whole(path("a.exr"), 8, 40));
-    EXPECT_FALSE(exr_is_whole(path("a.exr"), 8, 41));
-    EXPECT_FALSE(exr_is_whole(path("a.exr"), 40, 8));
-    for (std::size_t size = 0; size < whole.size(); size += size + 150 < whole.size() ? 150 : 3) {
-      put(path("cut.exr"), whole.substr(0, size));
-      ASSERT_FALSE(exr_is_whole(path("cut.exr"), 8, 40)) << size << " of " << whole.size();
-    }
-  }
-}
-
-TEST_F(ExrWriterTest, WholeNeverThrows) {
-  EXPECT_FALSE(exr_is_whole(path("missing.exr"), 1, 1));
-  EXPECT_FALSE(exr_is_whole(folder_, 1, 1));
-  EXPECT_FALSE(exr_is_whole("", 1, 1));
-  put(path("text.exr"), "not a picture");
-  EXPECT_FALSE(exr_is_whole(path("text.exr"), 1, 1));
-  write_exr(path("a.exr"), full(8, 40), attributes(), Compression::zip);
-  const std::string whole = contents(path("a.exr"));
-  std::mt19937 random(1);
-  for (int i = 0; i < 300; ++i) {
-    std::string broken = whole;
-    for (int j = 0; j < 3; ++j) broken[random() % broken.size()] = static_cast<char>(random());
-    put(path("broken.exr"), broken);
-    (void)exr_is_whole(path("broken.exr"), 8, 40);
   }
 }
 
