@@ -137,8 +137,9 @@ def formatted(text: str) -> str:
     """As the package's formatter has it, where that is installed."""
     for program in (pathlib.Path(sys.executable).with_name("ruff"), ROOT / "build/venv/bin/ruff"):
         if program.is_file():
-            command = [program, "format", "--stdin-filename", ROOT / "client/src/sheaf/_render_settings.py", "-"]
-            told = subprocess.run(command, input=text, text=True, capture_output=True, check=True, cwd=ROOT / "client")
+            target = ROOT / "client/src/sheaf/_render_settings.py"
+            command = [str(program), "format", "--stdin-filename", str(target), "-"]
+            told = subprocess.run(command, input=text, text=True, capture_output=True, check=True, cwd=ROOT)
             return told.stdout
     raise SystemExit("no ruff: pip install -e './client[dev]'")
 

@@ -22,13 +22,18 @@ RELIEF = 0.12  # metres
 
 
 def wall(
-    corner: tuple[float, ...], u: tuple[float, ...], v: tuple[float, ...], cells: int, grain: float, random
+    corner: tuple[float, ...],
+    u: tuple[float, ...],
+    v: tuple[float, ...],
+    cells: int,
+    grain: float,
+    random: np.random.Generator,
 ) -> Shape:
     """cells × cells squares of two triangles; corners inside the outline stand out or back by up to RELIEF."""
-    corner, u, v = (np.asarray(a, dtype=np.float64) for a in (corner, u, v))
+    origin, along, upward = (np.asarray(a, dtype=np.float64) for a in (corner, u, v))
     steps = np.linspace(0, 1, cells + 1)
     across, up = (a.ravel() for a in np.meshgrid(steps, steps))
-    normal = np.cross(u, v) / np.linalg.norm(np.cross(u, v))
+    normal = np.cross(along, upward) / np.linalg.norm(np.cross(along, upward))
     inside = (across > 0) & (across < 1) & (up > 0) & (up < 1)
     # Bays of eight a side at every number of triangles, and a grain that is finer the more there are.
     bays = 0.5 * np.sin(8 * np.pi * across) * np.sin(8 * np.pi * up)
@@ -37,7 +42,7 @@ def wall(
     row = cells + 1
     lower = np.stack([first, first + 1, first + row + 1], 1)
     upper = np.stack([first, first + row + 1, first + row], 1)
-    points = corner + across[:, None] * u + up[:, None] * v + height[:, None] * normal
+    points = origin + across[:, None] * along + up[:, None] * upward + height[:, None] * normal
     triangles = np.stack([lower, upper], 1).reshape(-1, 3)
     return Shape(snap(points), triangles, smooth_normals(points, triangles))
 

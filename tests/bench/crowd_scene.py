@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -38,7 +39,9 @@ LIMBS = [  # bones, end, radius
 ]
 
 
-def tube(bones: tuple[int, ...], end, radius: float):
+def tube(
+    bones: tuple[int, ...], end: tuple[float, float, float], radius: float
+) -> tuple[np.ndarray, np.ndarray, list, list]:
     """Rings along a limb, pointed at both ends; with each vertex the two bones it follows, and their weights."""
     start = np.array(BONES[bones[0]][2], dtype=np.float64)
     axis = np.array(end) - start
@@ -65,7 +68,9 @@ def tube(bones: tuple[int, ...], end, radius: float):
 
 def body() -> tuple[Shape, list, list]:
     """All limbs as one mesh."""
-    points, faces, joints, weights, count = [], [], [], [], 0
+    points, faces, count = [], [], 0
+    joints: list[tuple[int, ...]] = []
+    weights: list[tuple[float, ...]] = []
     for limb in LIMBS:
         p, f, j, w = tube(*limb)
         points.append(p)
@@ -89,7 +94,7 @@ def skeleton(glb: Glb, name: str) -> list[int]:
     return nodes
 
 
-def swing(axis: int, angles) -> np.ndarray:
+def swing(axis: int, angles: Sequence[float] | np.ndarray) -> np.ndarray:
     """Quaternions about a main axis."""
     turns = np.zeros((len(angles), 4))
     turns[:, axis] = np.sin(np.asarray(angles) / 2)

@@ -57,7 +57,7 @@ class Embree:
         assert self.child.stdout is not None
         line = self.child.stdout.readline()
         if not line:
-            raise RuntimeError(f"{self.child.args}: exit {self.child.wait()}")
+            raise RuntimeError(f"{self.child.args!r}: exit {self.child.wait()}")
         return json.loads(line)
 
     def round(self) -> Round:

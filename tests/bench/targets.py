@@ -55,7 +55,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         for strategy in ("bvh", "hybrid", "auto"):
-            options = ("--size", "640x360", "--depth", "4", "--strategy", strategy)
+            options: tuple[str, ...] = ("--size", "640x360", "--depth", "4", "--strategy", strategy)
             render(sheaf, WHITTED, folder, *options, "--frames", "0")
             row(
                 f"whitted 640x360 depth 4, {strategy}",

@@ -34,7 +34,7 @@ def spheres(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
 def test_cells_part_where_rays_part(spheres: list[str], strategy: str, tmp_path: Path) -> None:
     stats = tmp_path / "stats.json"
     options = f"--size 160x90 --depth 2 --frames 0 --progress none --strategy {strategy}".split()
-    command = [SHEAF, "render", *spheres, *options, "--out", tmp_path, "--stats", stats]
+    command: list[str | Path] = [SHEAF, "render", *spheres, *options, "--out", tmp_path, "--stats", stats]
     subprocess.run(command, check=True, env=os.environ | NARROW)  # a vector's lanes are all counted
     frame = json.loads(stats.read_text())["frames"][0]
     for kind in ("shadow", "reflection"):

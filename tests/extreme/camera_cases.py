@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from case import (
     BLUE,
@@ -23,11 +25,11 @@ from case import (
 )
 from geometry_scenes import watched
 from glb import Glb
-from rendering import SCENES
+from rendering import SCENES, Picture
 from shapes import Shape, box, facing_z
 
 
-def in_a_box(lens, eye=(0, 0, 0)) -> bytes:
+def in_a_box(lens: Callable[[Glb], int], eye: Any = (0, 0, 0)) -> bytes:
     """A closed white box of 2 m round the camera."""
     glb = Glb()
     shape = box((2, 2, 2))
@@ -36,11 +38,11 @@ def in_a_box(lens, eye=(0, 0, 0)) -> bytes:
     return glb.bytes()
 
 
-def bare_perspective(yfov: float, near=1e-4):
+def bare_perspective(yfov: float, near: float | None = 1e-4) -> Callable[[Glb], int]:
     return lambda glb: glb.add("cameras", {"type": "perspective", "perspective": {"yfov": yfov, "znear": near}})
 
 
-def on_a_surface(*points) -> bytes:
+def on_a_surface(*points: Sequence[float]) -> bytes:
     """The camera's eye lies in a triangle that it must not see, the square is behind it."""
     glb = Glb()
     primitives = [
@@ -55,7 +57,7 @@ def two_million_rays() -> bytes:
     return one_mesh(triangles_of([(-8, -4, 0), (8, -4, 0), (0, 12, 0)]), mirror((0.5, 0.5, 0.5)), NO_LIGHT)
 
 
-def framed_whole(picture) -> None:
+def framed_whole(picture: Picture) -> None:
     """The box is seen, and nothing of it past the picture's border."""
     sane(picture)
     covered = picture.alpha > 0

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry_scenes import watched
 from glb import Glb
@@ -32,41 +34,41 @@ class Case:
         return self.check if isinstance(self.check, dict) else {0: self.check}
 
 
-def triangles_of(points, faces=None, normals=None) -> Shape:
+def triangles_of(points: npt.ArrayLike, faces: npt.ArrayLike | None = None, normals: np.ndarray | None = None) -> Shape:
     points = np.asarray(points, float).reshape(-1, 3)
     faces = np.arange(len(points)).reshape(-1, 3) if faces is None else np.asarray(faces)
     return Shape(points, faces, normals)
 
 
-def one_mesh(shape: Shape, material: Callable[[Glb], int], *more_nodes: Callable[[Glb], int], **watch) -> bytes:
+def one_mesh(shape: Shape, material: Callable[[Glb], int], *more_nodes: Callable[[Glb], int], **watch: Any) -> bytes:
     """A scene of one mesh before the camera that most small scenes share (x in [-2, 2], y in [-1, 1], from z = 5)."""
     glb = Glb()
     mesh = glb.mesh(glb.primitive(shape, material(glb)), "mesh")
     return watched(glb, [glb.node("mesh", mesh=mesh), *(make(glb) for make in more_nodes)], **watch)
 
 
-def unlit(colour=WHITE) -> Callable[[Glb], int]:
+def unlit(colour: Sequence[float] = WHITE) -> Callable[[Glb], int]:
     return lambda glb: glb.unlit("unlit", colour)
 
 
-def matte(colour=WHITE) -> Callable[[Glb], int]:
+def matte(colour: Sequence[float] = WHITE) -> Callable[[Glb], int]:
     """Diffuse alone: an index of refraction of 1 reflects nothing."""
     return lambda glb: glb.material("matte", colour, extensions={"KHR_materials_ior": {"ior": 1}})
 
 
-def mirror(colour=WHITE, emission=None) -> Callable[[Glb], int]:
-    more = {"emissiveFactor": [emission] * 3} if emission else {}
+def mirror(colour: Sequence[float] = WHITE, emission: float | None = None) -> Callable[[Glb], int]:
+    more: dict[str, Any] = {"emissiveFactor": [emission] * 3} if emission else {}
     return lambda glb: glb.material("mirror", colour, metallic=1, roughness=0, **more)
 
 
-def lamp(intensity: float, at, **more) -> Callable[[Glb], int]:
+def lamp(intensity: float, at: Sequence[float], **more: Any) -> Callable[[Glb], int]:
     return lambda glb: glb.light("lamp", "point", intensity, placed={"translation": at}, **more)
 
 
 NO_LIGHT = lamp(0, (0, 0, 1))  # a scene without lights is given one, whose glint would show
 
 
-def everywhere(colour, **tolerance) -> Callable[[Picture], None]:
+def everywhere(colour: npt.ArrayLike, **tolerance: float) -> Callable[[Picture], None]:
     """Every pixel is covered and of this colour."""
 
     def check(picture: Picture) -> None:
@@ -80,7 +82,13 @@ def nothing(picture: Picture) -> None:
     assert not picture.rgba.any()
 
 
-def shows(colour, where: Callable[[np.ndarray, np.ndarray], np.ndarray], extent=(2.0, 1.0), covers=1.0, **tolerance):
+def shows(
+    colour: npt.ArrayLike,
+    where: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    extent: tuple[float, float] = (2.0, 1.0),
+    covers: float = 1.0,
+    **tolerance: float,
+) -> Callable[[Picture], None]:
     """Covered and of this colour exactly where `where(x, y)` says so of a pixel's centre (in metres), else empty."""
 
     def check(picture: Picture) -> None:

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from case import (
     BLUE,
@@ -27,12 +29,13 @@ from case import (
 )
 from geometry_scenes import watched
 from glb import Glb
+from rendering import Picture
 from shapes import Shape, box, facing_z, grid, joined, sphere
 
 HALF_SQUARE = lambda x, y: (abs(x) < 0.5) & (abs(y) < 0.5)  # noqa: E731
 
 
-def scaled_view(scale: float, offset=(0.0, 0.0, 0.0)) -> bytes:
+def scaled_view(scale: float, offset: npt.ArrayLike = (0.0, 0.0, 0.0)) -> bytes:
     """A square of 1 m, everything (the camera too) scaled, then moved."""
     glb = Glb()
     offset = np.asarray(offset, float)
@@ -107,7 +110,7 @@ def size_ratio() -> bytes:
     glb = Glb()
     speck = np.array([(-1, -1, 0), (1, -1, 0), (0, 1, 0)]) * 1e-6 + (0.0625, 0.0625, 1)
     large = np.array([(-1, -1, 0), (1, -1, 0), (0, 1, 0)]) * 1e6 - (0, 0, 1)
-    parts = [(speck, RED), (facing_z(1, 1), WHITE), (large, BLUE)]
+    parts: list[tuple[Any, Any]] = [(speck, RED), (facing_z(1, 1), WHITE), (large, BLUE)]
     primitives = []
     for k, (part, colour) in enumerate(parts):
         shape = part if isinstance(part, Shape) else triangles_of(part)
@@ -115,7 +118,7 @@ def size_ratio() -> bytes:
     return watched(glb, [glb.node("ratio", mesh=glb.mesh(primitives))])
 
 
-def check_size_ratio(picture) -> None:
+def check_size_ratio(picture: Picture) -> None:
     rows, columns = np.mgrid[:16, :32]
     x, y = (columns + 0.5) / 8 - 2, 1 - (rows + 0.5) / 8
     wanted = np.where(HALF_SQUARE(x, y)[..., None], WHITE, BLUE)
@@ -138,7 +141,7 @@ def coplanar(perspective: bool) -> bytes:
     return glb.bytes()
 
 
-def either_of_two(picture) -> None:
+def either_of_two(picture: Picture) -> None:
     """Where two planes are one, either may be seen, but one of them is."""
     sane(picture)
     covered = picture.alpha == 1

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -11,19 +13,20 @@ from case import BLUE, TRACED, WHITE, Case, everywhere, lamp, matte, one_mesh
 from geometry_scenes import watched
 from glb import Glb
 from physics import close, pixels
+from rendering import Picture
 from shapes import Shape, box, facing_z, look_at, turn
 
 DARK = everywhere((0, 0, 0))
 
 
-def plane(*lights) -> bytes:
+def plane(*lights: Callable[[Glb], int]) -> bytes:
     return one_mesh(facing_z(4.5, 2.5), matte(), *lights)
 
 
-def lit_from(height: float, intensity: float):
+def lit_from(height: float, intensity: float) -> Callable[[Picture], None]:
     """A point light `height` above the middle: I·h / (π (h² + r²)^1.5)."""
 
-    def check(picture) -> None:
+    def check(picture: Picture) -> None:
         rows, columns = picture.alpha.shape
         x, y = pixels(columns, rows, 2, 1)
         wanted = intensity * height / (math.pi * (height**2 + x**2 + y**2) ** 1.5)
@@ -32,7 +35,7 @@ def lit_from(height: float, intensity: float):
     return check
 
 
-def spot_to_a_right_angle(picture) -> None:
+def spot_to_a_right_angle(picture: Picture) -> None:
     """A cone from 0 to 90 degrees: falls off as the square of the cosine."""
     rows, columns = picture.alpha.shape
     x, y = pixels(columns, rows, 2, 1)
@@ -40,7 +43,7 @@ def spot_to_a_right_angle(picture) -> None:
     close(picture.rgb, (math.pi * (4 / square) * 2 / (math.pi * square**1.5))[..., None], relative=2e-3)
 
 
-def a_hair_above(picture) -> None:
+def a_hair_above(picture: Picture) -> None:
     """10⁻⁶ m above the middle of one pixel: that one is lit (the point is only known to 10⁻⁸ m), and hardly another."""
     rows, columns = np.mgrid[:16, :32]
     there = (rows == 7) & (columns == 16)
@@ -59,13 +62,13 @@ def light_in_a_box() -> bytes:
     return watched(glb, [glb.node("box", mesh=glb.mesh(primitives)), lamp(100, (0, 0, 1))(glb)])
 
 
-def too_bright(picture) -> None:
+def too_bright(picture: Picture) -> None:
     """More than a half float holds: the largest there is."""
     assert (picture.alpha == 1).all()
     assert (picture.rgb == 65504).all()
 
 
-def sun(direction_turn) -> object:
+def sun(direction_turn: Any) -> Callable[[Glb], int]:
     return lambda glb: glb.light("sun", "directional", math.pi, placed={"rotation": direction_turn})
 
 

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from case import WHITE, Case, nothing, shows
 from geometry_scenes import watched
 from glb import Glb
+from rendering import Picture
 from shapes import facing_z
 
 
-def moved(*channels, rest=None) -> bytes:
+def moved(*channels: Any, rest: Any = None) -> bytes:
     """A square of 1 m; channels are (path, times, values, interpolation) of its node."""
     glb = Glb()
     node = glb.node("square", **(rest or {}), mesh=glb.mesh(glb.primitive(facing_z(1, 1), glb.unlit("white", WHITE))))
@@ -19,11 +24,15 @@ def moved(*channels, rest=None) -> bytes:
     return watched(glb, [node])
 
 
-def square_at(x0: float, y0: float = 0.0, half_width=0.5, half_height=0.5):
+def square_at(
+    x0: float, y0: float = 0.0, half_width: float = 0.5, half_height: float = 0.5
+) -> Callable[[Picture], None]:
     return shows(WHITE, lambda x, y: (abs(x - x0) < half_width) & (abs(y - y0) < half_height))
 
 
-def spline(times, values, tangents_in, tangents_out) -> tuple:
+def spline(
+    times: npt.ArrayLike, values: npt.ArrayLike, tangents_in: npt.ArrayLike, tangents_out: npt.ArrayLike
+) -> tuple:
     return ("translation", times, np.stack([tangents_in, values, tangents_out], 1), "CUBICSPLINE")
 
 

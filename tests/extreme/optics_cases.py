@@ -11,6 +11,7 @@ import numpy as np
 from case import BLUE, FURNACE, NO_LIGHT, RED, TRACED, WHITE, Case, everywhere, mirror, one_mesh, shows, triangles_of
 from geometry_scenes import watched
 from glb import Glb
+from rendering import Picture
 from shapes import Shape, box, facing_z, joined
 
 CLOSE = {"relative": 2e-3}
@@ -116,7 +117,7 @@ def in_one_plane(count: int) -> bytes:
     )
 
 
-def once_to_all(picture) -> None:
+def once_to_all(picture: Picture) -> None:
     """How many of the coincident panes a ray meets is free (each leaves it a rounding further on): from one to all."""
     covered = picture.alpha > 0
     assert covered.sum() == 64

@@ -120,7 +120,7 @@ def main() -> None:
         program = str(given.sheaf.resolve()) if given.sheaf else f"{folder}/sheaf"
         if not given.sheaf:
             pathlib.Path(program).write_text(WAITING.format(python=sys.executable, pace=given.pace, bytes=given.bytes))
-            program.chmod(0o755)
+            pathlib.Path(program).chmod(0o755)
         first: Row | None = None
         print("| workers | frames | seconds | frames per second | of one worker's, times | ms per frame |")
         print("| --- | --- | --- | --- | --- | --- |")

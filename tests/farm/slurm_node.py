@@ -13,7 +13,7 @@ import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol")
@@ -98,7 +98,7 @@ def said(command: list[str], environment: dict[str, str]) -> str:
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False).stdout
 
 
-def wait_for(is_so, what: str, seconds: float = START_SECONDS) -> None:
+def wait_for(is_so: Callable[[], bool], what: str, seconds: float = START_SECONDS) -> None:
     """Looks again and again: Slurm tells nobody."""
     end = time.monotonic() + seconds
     while not is_so():

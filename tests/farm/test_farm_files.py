@@ -73,7 +73,7 @@ def test_open_job_description(sheaf: pathlib.Path, scene: pathlib.Path, tmp_path
         "Sheaf": sheaf,
         "Options": "--size=8x4 --spp=2",
     }
-    command = [openjd, "run", template, "--extensions", "TASK_CHUNKING", "--step", "Render"]
+    command: list[str | pathlib.Path] = [openjd, "run", template, "--extensions", "TASK_CHUNKING", "--step", "Render"]
     command += [f"-p{name}={value}" for name, value in parameters.items()]
     subprocess.run(command, check=True, timeout=PATIENCE, cwd=tmp_path)
     assert frames(out) == [f"box.{number:04d}.exr" for number in range(7)]

@@ -33,7 +33,7 @@ class Ledger:
 class Contract:
     """Which statuses the service says an operation may have."""
 
-    def __init__(self, openapi: dict[str, Any]):
+    def __init__(self, openapi: dict[str, Any]) -> None:
         self._paths = openapi["paths"]
 
     def allows(self, method: str, path: str, status: int) -> bool:
@@ -46,7 +46,7 @@ class LoadClient:
 
     def __init__(
         self, number: int, http: httpx.AsyncClient, contract: Contract, ledger: Ledger, scene: bytes, name: str
-    ):
+    ) -> None:
         self._http, self._contract, self._ledger = http, contract, ledger
         self._scene, self._name = scene, name
         self._chance = random.Random(number)

@@ -28,7 +28,7 @@ def free_port() -> int:
 class Target:
     """`sheafd` on a folder of its own."""
 
-    def __init__(self, sheafd: pathlib.Path, sheaf: pathlib.Path, data: pathlib.Path, options: list[str]):
+    def __init__(self, sheafd: pathlib.Path, sheaf: pathlib.Path, data: pathlib.Path, options: list[str]) -> None:
         self.port = free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         self.data = data
@@ -79,7 +79,7 @@ class Target:
 class Killer(threading.Thread):
     """Kills the service or a worker every so often, whichever chance takes."""
 
-    def __init__(self, target: Target, seconds: float, seed: int):
+    def __init__(self, target: Target, seconds: float, seed: int) -> None:
         super().__init__(name="killer")
         self._target, self._seconds = target, seconds
         self._chance = random.Random(seed)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from glb import Glb
 from shapes import Shape, joined, sphere
 
 
-def _scene(points: np.ndarray, extent: float, centre=(0.0, 0.0, 0.0)) -> bytes:
+def _scene(points: np.ndarray, extent: float, centre: Sequence[float] = (0.0, 0.0, 0.0)) -> bytes:
     """Triangles (n, 3, 3) around `centre`, which is a node's translation; `extent` is half the width of it all."""
     glb = Glb()
     mirrors = max(1, len(points) // 10)

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 
@@ -33,6 +34,8 @@ if REQUIRED:
 else:
     playwright = pytest.importorskip("playwright.sync_api")
 
+expect, PageError = playwright.expect, playwright.Error
+
 
 def chromium() -> str:
     found = os.environ.get("SHEAF_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
@@ -44,7 +47,8 @@ def chromium() -> str:
 @contextlib.contextmanager
 def running(data: pathlib.Path, *options: str) -> Iterator[str]:
     """The address of a service whose worker is the real engine."""
-    command = [BUILD / "sheafd", "--listen", "127.0.0.1:0", "--min-free", "0", "--data", data, *options]
+    command: list[str | pathlib.Path] = [BUILD / "sheafd", "--listen", "127.0.0.1:0", "--min-free", "0"]
+    command += ["--data", data, *options]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert process.stderr
     said = (line.split('"address":"') for line in process.stderr if '"address":"' in line)
@@ -75,7 +79,7 @@ def guarded(tmp_path: pathlib.Path) -> Iterator[tuple[str, str]]:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[object]:
+def browser() -> Iterator[Any]:
     with playwright.sync_playwright() as driver:
         # The sandbox wants user namespaces, which root in a container has not.
         launched = driver.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
@@ -84,12 +88,12 @@ def browser() -> Iterator[object]:
 
 
 @pytest.fixture
-def visit(browser, service: str) -> Iterator[Callable[..., object]]:
+def visit(browser: Any, service: str) -> Iterator[Callable[..., Any]]:
     """Opens the page in a window of its own. Errors on it, and requests to anywhere else, fail the test."""
     bad: list[str] = []
     contexts = []
 
-    def open_page(path: str = "", at: str = service, **options: object):
+    def open_page(path: str = "", at: str = service, **options: object) -> Any:
         context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
         context.set_default_timeout(PATIENCE_MS)
         playwright.expect.set_options(timeout=PATIENCE_MS)

@@ -6,16 +6,16 @@ from __future__ import annotations
 import base64
 import pathlib
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import OpenEXR
 import pytest
 
 import sheaf
-from conftest import PATIENCE_MS, SCENES, playwright
+from conftest import PATIENCE_MS, SCENES, PageError
 
-expect = playwright.expect
-Visit = Callable[..., object]
+Visit = Callable[..., Any]
 
 # The numbers as text: what is infinite has no place in JSON.
 READ = """async (bytes) => {
@@ -36,7 +36,7 @@ def check(read: dict[str, list[str]], name: str, wanted: np.ndarray) -> None:
 
 @pytest.mark.parametrize("compression", ["none", "rle", "zips", "zip"])
 def test_every_compression_is_read_as_it_is(visit: Visit, client: sheaf.Client, compression: str) -> None:
-    settings = {"size": "70x75", "strategy": "reference", "aov": "Z,id", "compression": compression}
+    settings: dict[str, Any] = {"size": "70x75", "strategy": "reference", "aov": "Z,id", "compression": compression}
     job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
     read = visit().evaluate(FETCHED, f"v1/jobs/{job.id}/frames/0.exr")
     layers = job.frame(0).layers
@@ -102,7 +102,7 @@ def test_what_openexr_writes_is_read(visit: Visit, tmp_path: pathlib.Path, name:
 def test_what_cannot_be_shown_says_so(visit: Visit, tmp_path: pathlib.Path) -> None:
     path = tmp_path / "picture.exr"
     written(path, OpenEXR.B44_COMPRESSION, **picture(8, 8))
-    with pytest.raises(playwright.Error, match="compressed with b44 are not shown in the browser"):
+    with pytest.raises(PageError, match="compressed with b44 are not shown in the browser"):
         visit().evaluate(GIVEN, base64.b64encode(path.read_bytes()).decode())
 
 

@@ -6,12 +6,13 @@ from __future__ import annotations
 import json
 import subprocess
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from conftest import BUILD
 
-Visit = Callable[..., object]
+Visit = Callable[..., Any]
 
 
 @pytest.fixture(scope="module")

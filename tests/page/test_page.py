@@ -7,15 +7,15 @@ import json
 import pathlib
 import re
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 import sheaf
-from conftest import PATIENCE_MS, SCENES, playwright, running
+from conftest import PATIENCE_MS, SCENES, expect, running
 
-expect = playwright.expect
-Visit = Callable[..., object]
+Visit = Callable[..., Any]
 
 
 def send(page, scene: pathlib.Path, frames: str = "0-2") -> None:
@@ -129,7 +129,7 @@ def test_a_frame_is_opened_with_all_its_layers(visit: Visit, done: sheaf.Job) ->
 
 
 def test_two_jobs_side_by_side(visit: Visit, client: sheaf.Client, done: sheaf.Job) -> None:
-    settings = {"size": "64x36", "strategy": "reference", "primary": "trace"}
+    settings: dict[str, Any] = {"size": "64x36", "strategy": "reference", "primary": "trace"}
     client.submit(SCENES / "cornell.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
     page = visit(f"#job={done.id}")
     expect(page.locator("#tests tbody tr")).to_have_count(4)

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 import sheaf
-from conftest import playwright
+from conftest import expect
 
-expect = playwright.expect
-Visit = Callable[..., object]
+Visit = Callable[..., Any]
 
 
 @pytest.fixture(

@@ -104,7 +104,7 @@ class Run:
 class Sheaf:
     """Runs the program; every run gets a folder of its own."""
 
-    def __init__(self, folder: pathlib.Path):
+    def __init__(self, folder: pathlib.Path) -> None:
         self.folder = folder
         self.runs = 0
 

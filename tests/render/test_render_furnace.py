@@ -139,15 +139,15 @@ def test_blended_occluded_and_bumpy(sheaf, tmp_path):
 
 def test_a_tinted_surface_returns_its_share(sheaf, tmp_path):
     """At 60°: Fresnel's share whole, of the rest the base."""
-    base, angle = np.array((0.5, 0.25, 1)), 60
+    tint, angle = (0.5, 0.25, 1), 60
     glb = Glb()
     wide = facing_z(8, 2)
     nodes = [
-        glb.node("plane", None, turn((0, 1, 0), angle), mesh=glb.mesh(glb.primitive(wide, glb.material("m", base))))
+        glb.node("plane", None, turn((0, 1, 0), angle), mesh=glb.mesh(glb.primitive(wide, glb.material("m", tint))))
     ]
     f = 0.04 + 0.96 * 0.5**5
     for picture in shown(sheaf, tmp_path, glb, nodes):
-        close(picture.rgb, f + (1 - f) * base)
+        close(picture.rgb, f + (1 - f) * np.array(tint))
 
 
 def lamps_from_all_sides(count=256) -> np.ndarray:

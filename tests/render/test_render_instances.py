@@ -37,7 +37,7 @@ def test_same_dump_as_copied(sheaf):
         sheaf.render("whitted", "--instances", way, "--dump", folders[-1], "--frames", 1)
     names = sorted(path.name for path in folders[0].iterdir())
     assert any("triangles" in name for name in names)
-    assert filecmp.cmpfiles(*folders, names, shallow=False) == (names, [], [])
+    assert filecmp.cmpfiles(folders[0], folders[1], names, shallow=False) == (names, [], [])
 
 
 def sheets() -> bytes:

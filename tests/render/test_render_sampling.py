@@ -3,6 +3,7 @@
 against many samples."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,7 +129,7 @@ def tiled_room(mipmaps: bool, shift: float = 0.0) -> bytes:
 def rooms(sheaf_once, tmp_path_factory):
     """Pictures of the room: filtered and not, at two places of the camera, and what many samples make of it."""
     folder = tmp_path_factory.mktemp("rooms")
-    calls = {}
+    calls: dict[tuple[Any, Any], dict[str, Any]] = {}
     for mipmaps in (True, False):
         for shift in (0.0, 0.004):
             path = folder / f"room_{mipmaps}_{shift}.glb"

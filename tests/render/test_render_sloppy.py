@@ -170,7 +170,7 @@ def test_an_attenuation_distance_of_0_absorbs_nothing(sheaf, tmp_path):
 def test_a_range_of_0_reaches_everywhere(sheaf, tmp_path):
     """A point light 2 above a Lambertian square: 10 candela over 4, and over pi for the surface; the dielectric's
     reflection takes its share alike."""
-    lit = []
+    lit: list[np.ndarray] = []
     for light in ({"range": 0}, {}):
         doc = document()
         doc["materials"][0] = {"pbrMetallicRoughness": {"metallicFactor": 0}}

@@ -79,6 +79,7 @@ def test_no_teeth(sheaf, tmp_path, segments, tube):
 def test_no_teeth_on_a_morphed_and_scaled_ball(sheaf, tmp_path):
     """The rest shape is flat: normals and corners are those of the deformed mesh."""
     shape = ball(8)
+    assert shape.normals is not None
     glb = Glb()
     flat = Shape(shape.positions * (1, 1, 0), shape.triangles, np.tile((0.0, 0, 1), (len(shape.positions), 1)))
     targets = [

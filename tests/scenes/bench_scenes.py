@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Scenes of any size for measurements; written on demand, never committed."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -9,7 +11,15 @@ from glb import Glb
 from shapes import Shape, facing_up, look_at, smooth_normals, sphere
 
 
-def spheres(count=100, frequency=16, seed=1, apart=False, still=False, glass=0.1, mirror=0.25) -> bytes:
+def spheres(
+    count: int = 100,
+    frequency: int = 16,
+    seed: int = 1,
+    apart: bool = False,
+    still: bool = False,
+    glass: float = 0.1,
+    mirror: float = 0.25,
+) -> bytes:
     """`count` balls of 20·frequency² triangles over a floor, all on a slow merry-go-round unless `still`.
     `apart`: every ball a mesh of its own instead of one shared mesh. `glass`, `mirror`: their shares."""
     glb = Glb()
@@ -48,7 +58,7 @@ def spheres(count=100, frequency=16, seed=1, apart=False, still=False, glass=0.1
     return glb.bytes()
 
 
-def soup(triangles=10000, seed=1, ratio=100.0) -> bytes:
+def soup(triangles: int = 10000, seed: int = 1, ratio: float = 100.0) -> bytes:
     """Random triangles in a 2 m cube, sizes log-uniform over `ratio`; a tenth of them mirrors."""
     glb = Glb()
     random = np.random.default_rng(seed)

@@ -1,25 +1,28 @@
 # SPDX-License-Identifier: MIT
 """Example camera paths for whitted.glb, one for each form that `--camera` reads."""
 
+from __future__ import annotations
+
 import json
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from glb import numbers
 from shapes import look_rotation
 from whitted import AIM
 
 
-def _text(value) -> bytes:
+def _text(value: object) -> bytes:
     return (json.dumps(value, indent=1) + "\n").encode()
 
 
-def _on_circle(angle, radius=7.2, height=2.1):
+def _on_circle(angle: float, radius: float = 7.2, height: float = 2.1) -> tuple[float, float, float]:
     return AIM[0] + radius * math.sin(angle), height, AIM[2] + radius * math.cos(angle)
 
 
-def _camera_to_world(eye) -> np.ndarray:
+def _camera_to_world(eye: npt.ArrayLike) -> np.ndarray:
     matrix = np.eye(4)
     matrix[:3, :3] = look_rotation(eye, AIM)
     matrix[:3, 3] = eye

@@ -2,14 +2,20 @@
 """Small scenes, one for each way in which glTF can store a mesh. Unlit colours, so that a picture shows geometry
 and nothing else; an orthographic camera at z = 5 looking along -Z, unless said otherwise."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from glb import ARRAY_BUFFER, TRIANGLE_FAN, TRIANGLE_STRIP, Glb, numbers
 from png import rgba
 from shapes import box, facing_z, turn
 
 
-def watched(glb: Glb, nodes, xmag=2.0, ymag=1.0, scene="scene") -> bytes:
+def watched(glb: Glb, nodes: Iterable[int], xmag: float = 2.0, ymag: float = 1.0, scene: str = "scene") -> bytes:
     """Adds the camera that most small scenes share and finishes the file."""
     eye = glb.node("camera", (0, 0, 5), camera=glb.orthographic("camera", xmag, ymag))
     glb.scene([*list(nodes), eye], scene)
@@ -23,7 +29,9 @@ def strips_fans() -> bytes:
     fan = [(x * 0.5, round(y * 0.5, 9), 0) for x, y in hexagon]
     ribbon = [(0.75, -0.5, 0), (1.25, -0.5, 0), (0.75, 0.5, 0), (1.25, 0.5, 0), (1.75, -0.5, 0), (1.75, 0.5, 0)]
 
-    def primitive(points, mode, material, indices=None):
+    def primitive(
+        points: npt.ArrayLike, mode: int, material: int, indices: npt.ArrayLike | None = None
+    ) -> dict[str, Any]:
         item = {"attributes": {"POSITION": glb.attribute(points, bounds=True)}, "mode": mode, "material": material}
         return item | ({} if indices is None else {"indices": glb.indices(indices)})
 
@@ -99,7 +107,7 @@ def sparse() -> bytes:
     )
 
 
-def _sparse_part(glb: Glb, places, values) -> dict:
+def _sparse_part(glb: Glb, places: Sequence[int], values: npt.ArrayLike) -> dict:
     return {
         "count": len(places),
         "indices": {"bufferView": glb.view(np.asarray(places, np.uint16).tobytes()), "componentType": 5123},
@@ -111,6 +119,7 @@ def normalised() -> bytes:
     """What core glTF allows: UVs as 16-bit and colours as 8-bit fractions (RGB padded to four bytes)."""
     glb = Glb()
     quad = facing_z(2, 2, uv_scale=1)
+    assert quad.uvs is not None
     texture = glb.texture(rgba([[(255, 255, 255), (255, 0, 0)], [(0, 255, 0), (0, 0, 255)]]))
     primitive = {
         "attributes": {
@@ -129,6 +138,7 @@ def quantised() -> bytes:
     glb = Glb()
     glb.uses("KHR_mesh_quantization", required=True)
     shape = box((2, 2, 2))
+    assert shape.normals is not None
     primitive = {
         "attributes": {
             "POSITION": glb.attribute(shape.positions * 32767, "i16", normalized=True, bounds=True),

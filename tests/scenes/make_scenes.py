@@ -56,7 +56,7 @@ def check() -> int:
     return 1 if wrong else 0
 
 
-def arguments():
+def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="compare instead of writing")
     kinds = parser.add_subparsers(dest="kind")
@@ -77,7 +77,7 @@ def arguments():
 
 
 def main() -> int:
-    options = vars(arguments())
+    options = dict(vars(arguments()))
     kind, only_check = options.pop("kind"), options.pop("check")
     if kind:
         out = options.pop("out")

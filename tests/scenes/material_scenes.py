@@ -2,7 +2,10 @@
 """Small scenes for textures and materials. Where no light is wanted a directional one shines from behind, so
 that no default light is added."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -19,13 +22,13 @@ def unlit_by_behind(glb: Glb) -> int:
     return glb.light("behind", "directional", 1, placed={"rotation": turn((0, 1, 0), 180)})
 
 
-def quad_of(glb: Glb, material, name="quad", size=2.0, **placed) -> int:
+def quad_of(glb: Glb, material: int, name: str = "quad", size: float = 2.0, **placed: Any) -> int:
     textured = any(key.endswith("Texture") for key in _slots(glb.json["materials"][material]))
     shape = facing_z(size, size, uv_scale=1 if textured else None)
     return glb.node(name, mesh=glb.mesh(glb.primitive(shape, material), name), **placed)
 
 
-def _slots(material):
+def _slots(material: dict[str, Any]) -> list[str]:
     return list(material) + list(material["pbrMetallicRoughness"])
 
 
@@ -54,6 +57,7 @@ def samplers() -> bytes:
     glb = Glb()
     png = rgba([[RED, BLUE]])
     wide = facing_z(0.9, 0.9, uv_scale=3)
+    assert wide.uvs is not None
     nodes = []
     for k, (name, wrap) in enumerate((("repeat", REPEAT), ("mirror", MIRROR), ("clamp", CLAMP), ("linear", CLAMP))):
         filters = (LINEAR, LINEAR) if name == "linear" else (NEAREST, NEAREST)

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Small animated scenes whose vertices at given times can be computed by hand (README.md)."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from geometry_scenes import watched
@@ -8,15 +13,15 @@ from glb import Glb
 from shapes import facing_z, turn
 
 
-def _square(glb: Glb, name, colour, size=0.25, **placed) -> int:
+def _square(glb: Glb, name: str, colour: Sequence[float], size: float = 0.25, **placed: Any) -> int:
     shape = facing_z(size, size)
     return glb.node(name, mesh=glb.mesh(glb.primitive(shape, glb.unlit(name, colour)), name), **placed)
 
 
-def _bar(glb: Glb, weights) -> int:
+def _bar(glb: Glb, weights: Any) -> int:
     """A strip 0.2 m wide and 2 m high on three pairs of vertices; gives its mesh."""
     points = [(x, y, 0) for y in (0, 1, 2) for x in (-0.1, 0.1)]
-    primitive = {
+    primitive: dict[str, Any] = {
         "attributes": {"POSITION": glb.attribute(points, bounds=True)},
         "indices": glb.indices([(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)]),
         "material": glb.unlit("bar", (1, 0.5, 0)),
@@ -28,7 +33,7 @@ def _bar(glb: Glb, weights) -> int:
     return glb.mesh(primitive, "bar")
 
 
-def _bent(glb: Glb, weights, copies=1) -> bytes:
+def _bent(glb: Glb, weights: Any, copies: int = 1) -> bytes:
     """Two joints, at y = 0 and y = 1; the upper one turns from 0° to 90° about +Z in 1 s. Even places of the skin
     are the lower joint and nodes fixed to it, odd ones the upper's."""
     lower_copies = [glb.node(f"lower {k}") for k in range(1, copies)]
@@ -75,7 +80,7 @@ def morph() -> bytes:
             "sparse": {
                 "count": 2,
                 "indices": {"bufferView": glb.view(places.tobytes()), "componentType": 5123},
-                "values": {"bufferView": glb.view(np.float32([(0, 0.5, 0)] * 2).tobytes())},
+                "values": {"bufferView": glb.view(np.array([(0, 0.5, 0)] * 2, np.float32).tobytes())},
             },
         },
     )
@@ -97,7 +102,8 @@ def interpolation() -> bytes:
         _square(glb, n, c, translation=(0, 0.75 - 0.5 * k, 0))
         for k, (n, c) in enumerate(zip(names, colours, strict=True))
     ]
-    times, channels = [0, 1, 2], []
+    times = [0, 1, 2]
+    channels: list[tuple[Any, ...]] = []
     for k, kind in enumerate(("STEP", "LINEAR", "CUBICSPLINE")):
         values = np.array([(x, 0.75 - 0.5 * k, 0) for x in (0, 1, 0)])
         if kind == "CUBICSPLINE":  # leaves and arrives with 2 m/s at 0 and 2 s, stands still at 1 s

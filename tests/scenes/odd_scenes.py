@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Scenes at the edges: nothing to see, far off, tiny, huge, degenerate."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry_scenes import watched
 from glb import Glb
 from shapes import Shape, box, facing_up, facing_z, look_at, sphere
 
 
-def _still_life(scale=1.0, offset=(0, 0, 0)) -> bytes:
+def _still_life(scale: float = 1.0, offset: npt.ArrayLike = (0, 0, 0)) -> bytes:
     """A mirror ball and a matte box on a floor under a point light. `scale` is in the vertices and the lens, with
     candela by its square, `offset` in the nodes: the picture is the same for all."""
     glb = Glb()
     offset = np.asarray(offset, dtype=float)
 
-    def at(*p):
+    def at(*p: float) -> np.ndarray:
         return offset + np.asarray(p, dtype=float) * scale
 
     matte = glb.material("matte", (0.7, 0.3, 0.2))

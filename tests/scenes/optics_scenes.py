@@ -2,24 +2,28 @@
 """Scenes whose pictures can be computed by hand: Snell, Fresnel, Beer and Lambert. README.md tabulates the answers;
 `answers()` computes them."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from geometry_scenes import watched
-from glb import Glb
-from shapes import Shape, box, facing_up, facing_z, look_at, snap, sphere, turn
+from glb import Glb, snap
+from shapes import Shape, box, facing_up, facing_z, look_at, sphere, turn
 
 IOR = 1.5
 SLAB_COLOUR, SLAB_DISTANCE, SLAB_THICKNESS = (0.5, 0.25, 0.8), 0.5, 1.0
 MATTE = {"KHR_materials_ior": {"ior": 1}}  # a purely diffuse surface: the specular lobe's weight is 0
 
 
-def _object(glb: Glb, shape, material, name, **placed) -> int:
+def _object(glb: Glb, shape: Shape, material: int, name: str, **placed: Any) -> int:
     return glb.node(name, mesh=glb.mesh(glb.primitive(shape, material), name), **placed)
 
 
-def _walls(glb: Glb, edge) -> list:
+def _walls(glb: Glb, edge: float) -> list:
     """An unlit wall at z = -2, red left of x = edge and blue right of it."""
     red, blue = glb.unlit("red", (1, 0, 0)), glb.unlit("blue", (0, 0, 1))
     return [
@@ -67,7 +71,9 @@ def prism() -> bytes:
     glb = Glb()
     a, b, c = (-1, 1), (1, 1), (1, -1)  # (x, z): legs z = 1 (towards the camera) and x = 1, hypotenuse a-c
     quads = [[a, b], [b, c], [c, a]]
-    points, triangles, h = [], [], 2.0
+    points: list[tuple[float, float, float]] = []
+    triangles: list[tuple[int, int, int]] = []
+    h = 2.0
     for (x0, z0), (x1, z1) in quads:
         n = len(points)
         points += [(x0, -h, z0), (x1, -h, z1), (x1, h, z1), (x0, h, z0)]
@@ -105,7 +111,7 @@ def mirrors() -> bytes:
     return glb.bytes()
 
 
-def _plane_from_above(glb: Glb, nodes, half=2.0) -> bytes:
+def _plane_from_above(glb: Glb, nodes: Iterable[int], half: float = 2.0) -> bytes:
     """A matte plane of albedo 1/2, seen straight from above with +X to the right."""
     plane = _object(glb, facing_up(10, 10), glb.material("matte", (0.5, 0.5, 0.5), extensions=MATTE), "plane")
     eye = glb.orthographic("camera", half, half, 0.01, 100)
@@ -155,7 +161,7 @@ def nested_glass() -> bytes:
     return watched(glb, nodes)
 
 
-def fresnel(cos_in, n) -> float:
+def fresnel(cos_in: float, n: float) -> float:
     """Unpolarised reflectance at an interface whose far side has index n relative to the near side."""
     sine = math.sqrt(max(0.0, 1 - cos_in**2)) / n
     if sine >= 1:

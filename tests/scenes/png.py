@@ -2,10 +2,14 @@
 """Tiny PNG files whose bytes depend on nothing but the pixels: deflate blocks are stored, never compressed,
 because what a compressor makes of them differs between zlib builds."""
 
+from __future__ import annotations
+
 import struct
 import zlib
+from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 
 def _chunk(kind: bytes, body: bytes) -> bytes:
@@ -29,7 +33,7 @@ def _file(width: int, height: int, depth: int, colour: int, extra: bytes, rows: 
     )
 
 
-def rgba(pixels) -> bytes:
+def rgba(pixels: npt.ArrayLike) -> bytes:
     """8-bit RGB or RGBA from rows of byte tuples, top row first."""
     array = np.asarray(pixels, dtype=np.uint8)
     height, width, channels = array.shape
@@ -37,7 +41,7 @@ def rgba(pixels) -> bytes:
     return _file(width, height, 8, colour, b"", [row.tobytes() for row in array])
 
 
-def two_colours(bits, first, second) -> bytes:
+def two_colours(bits: npt.ArrayLike, first: Sequence[int], second: Sequence[int]) -> bytes:
     """A one-bit palette image: where `bits` is 0 the first colour, else the second."""
     array = np.asarray(bits, dtype=np.uint8)
     height, width = array.shape

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Triangle shapes and a little vector algebra. Counter-clockwise seen from outside; metres; +Y up."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from glb import snap
 
@@ -15,19 +20,19 @@ class Shape:
     normals: np.ndarray | None = None
     uvs: np.ndarray | None = None
 
-    def moved(self, offset) -> "Shape":
+    def moved(self, offset: npt.ArrayLike) -> Shape:
         return replace(self, positions=self.positions + np.asarray(offset, dtype=np.float64))
 
-    def scaled(self, factor) -> "Shape":
+    def scaled(self, factor: npt.ArrayLike) -> Shape:
         return replace(self, positions=self.positions * np.asarray(factor, dtype=np.float64))
 
 
-def unit(v):
+def unit(v: npt.ArrayLike) -> np.ndarray:
     v = np.asarray(v, dtype=np.float64)
     return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
-def joined(shapes) -> Shape:
+def joined(shapes: Sequence[Shape]) -> Shape:
     """One shape of many; all or none have normals and UVs."""
     starts = np.cumsum([0] + [len(s.positions) for s in shapes[:-1]])
     together = {
@@ -38,13 +43,12 @@ def joined(shapes) -> Shape:
     return Shape(triangles=np.concatenate([s.triangles + n for s, n in zip(shapes, starts, strict=True)]), **together)
 
 
-def grid(corner, u, v, cells=(1, 1), uv_scale=None) -> Shape:
+def grid(corner: npt.ArrayLike, u: npt.ArrayLike, v: npt.ArrayLike, cells: Any = (1, 1), uv_scale: Any = None) -> Shape:
     """A parallelogram from `corner` along u and v; its normal is u × v. Where asked for, UVs run along u,
     and down along v as images do: (0, 0) is at the far end of v."""
     corner, u, v = (np.asarray(a, dtype=np.float64) for a in (corner, u, v))
     s, t = (np.linspace(0, 1, n + 1) for n in cells)
-    across, up = np.meshgrid(s, t)
-    across, up = across.ravel(), up.ravel()
+    across, up = (a.ravel() for a in np.meshgrid(s, t))
     row = cells[0] + 1
     first = (np.arange(cells[1])[:, None] * row + np.arange(cells[0])).ravel()
     lower = np.stack([first, first + 1, first + row + 1], 1)
@@ -57,16 +61,25 @@ def grid(corner, u, v, cells=(1, 1), uv_scale=None) -> Shape:
     )
 
 
-def facing_z(width, height, z=0.0, centre=(0.0, 0.0), cells=(1, 1), uv_scale=None) -> Shape:
+def facing_z(
+    width: float,
+    height: float,
+    z: float = 0.0,
+    centre: Sequence[float] = (0.0, 0.0),
+    cells: Any = (1, 1),
+    uv_scale: Any = None,
+) -> Shape:
     """A rectangle seen from +Z."""
     return grid((centre[0] - width / 2, centre[1] - height / 2, z), (width, 0, 0), (0, height, 0), cells, uv_scale)
 
 
-def facing_up(width, depth, y=0.0, cells=(1, 1), uv_scale=None) -> Shape:
+def facing_up(width: float, depth: float, y: float = 0.0, cells: Any = (1, 1), uv_scale: Any = None) -> Shape:
     return grid((-width / 2, y, depth / 2), (width, 0, 0), (0, 0, -depth), cells, uv_scale)
 
 
-def box(size=(1, 1, 1), centre=(0, 0, 0), cells=1, uv_scale=None) -> Shape:
+def box(
+    size: npt.ArrayLike = (1, 1, 1), centre: Sequence[float] = (0, 0, 0), cells: Any = 1, uv_scale: Any = None
+) -> Shape:
     """Six faces of their own with flat normals, outward."""
     half = np.asarray(size, dtype=np.float64) / 2
     faces = []
@@ -81,7 +94,7 @@ def box(size=(1, 1, 1), centre=(0, 0, 0), cells=1, uv_scale=None) -> Shape:
     return joined(faces).moved(centre)
 
 
-def _icosahedron():
+def _icosahedron() -> tuple[np.ndarray, list[tuple[int, int, int]]]:
     g = (1 + 5**0.5) / 2
     corners = [
         (-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
@@ -99,9 +112,11 @@ def sphere(frequency: int) -> Shape:
     """A unit sphere: an icosahedron's faces cut into frequency² each, 20·frequency² triangles, watertight
     (neighbours share their vertices). Positions are the exact normals."""
     corners, faces = _icosahedron()
-    positions, known, triangles = [], {}, []
+    positions: list[np.ndarray] = []
+    known: dict[tuple[tuple[int, int], ...], int] = {}
+    triangles = []
 
-    def vertex(face, i, j):
+    def vertex(face: tuple[int, int, int], i: int, j: int) -> int:
         weights = (frequency - i - j, i, j)
         key = tuple(sorted((c, w) for c, w in zip(face, weights, strict=True) if w))
         if key not in known:
@@ -120,7 +135,7 @@ def sphere(frequency: int) -> Shape:
     return Shape(points, np.array(triangles), normals=points)
 
 
-def smooth_normals(positions, triangles) -> np.ndarray:
+def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Area-weighted mean of the faces' normals at each vertex."""
     a, b, c = (positions[triangles[:, k]] for k in range(3))
     face = np.cross(b - a, c - a)
@@ -131,12 +146,12 @@ def smooth_normals(positions, triangles) -> np.ndarray:
 
 
 # ---- rotations: quaternions as glTF writes them, x y z w ----
-def turn(axis, degrees) -> np.ndarray:
+def turn(axis: npt.ArrayLike, degrees: float) -> np.ndarray:
     half = np.radians(degrees) / 2
     return snap(np.append(unit(axis) * np.sin(half), np.cos(half)), 2.0**-40)
 
 
-def quaternion(matrix) -> np.ndarray:
+def quaternion(matrix: npt.ArrayLike) -> np.ndarray:
     """Of a rotation matrix, by the largest of the four components, so that nothing cancels."""
     m = np.asarray(matrix, dtype=np.float64)
     squares = [
@@ -156,12 +171,12 @@ def quaternion(matrix) -> np.ndarray:
     return snap(unit(rows[k]), 2.0**-40)
 
 
-def look_rotation(eye, target, up=(0, 1, 0)) -> np.ndarray:
+def look_rotation(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, 1, 0)) -> np.ndarray:
     """Columns: the axes of a camera (or light) at `eye` whose -Z points at `target`."""
-    back = unit(np.asarray(eye, dtype=np.float64) - target)
-    right = unit(np.cross(up, back))
+    back = unit(np.asarray(eye, dtype=np.float64) - np.asarray(target, dtype=np.float64))
+    right = unit(np.cross(np.asarray(up, dtype=np.float64), back))
     return np.stack([right, np.cross(back, right), back], axis=1)
 
 
-def look_at(eye, target, up=(0, 1, 0)) -> np.ndarray:
+def look_at(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, 1, 0)) -> np.ndarray:
     return quaternion(look_rotation(eye, target, up))

@@ -3,9 +3,13 @@
 before a mirror sphere over a checkered floor, here with a moving light and camera, a skinned tentacle and a
 morphing flower. Four seconds, the last key equal to the first."""
 
+from __future__ import annotations
+
 import itertools
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from glb import LINEAR, LINEAR_MIPMAP_LINEAR, REPEAT, Glb, snap
 from png import two_colours
@@ -20,7 +24,7 @@ FLOWER = (2.25, 0.0, 0.45)
 AIM = (0.05, 1.12, 0.0)
 
 
-def cubic_loop(times, points):
+def cubic_loop(times: np.ndarray, points: npt.ArrayLike) -> np.ndarray:
     """CUBICSPLINE keys through `points` with Catmull-Rom tangents, the first key repeated as the last."""
     points = np.asarray(points, dtype=np.float64)
     step = times[1] - times[0]
@@ -29,7 +33,7 @@ def cubic_loop(times, points):
     return snap(np.concatenate([keys, keys[:1]]))
 
 
-def hermite_loop(times, keys, t):
+def hermite_loop(times: np.ndarray, keys: np.ndarray, t: float) -> np.ndarray:
     """The curve that a player makes of those keys, glTF 2.0 appendix C."""
     i = min(int(np.searchsorted(times, t, side="right")) - 1, len(times) - 2)
     d = times[i + 1] - times[i]
@@ -82,7 +86,7 @@ def sky(glb: Glb) -> int:
     return glb.node("sky", mesh=glb.mesh(glb.primitive(shape, material, COLOR_0=colour), "sky"))
 
 
-def tentacle_shape():
+def tentacle_shape() -> tuple[Shape, np.ndarray]:
     """A tapering tube with a rounded tip; gives the shape and each vertex's height as a share of the whole."""
     rings, segments = 44, 24
     share = np.append(np.linspace(0, 0.92, rings - 6), 0.92 + 0.08 * np.sin(np.linspace(0, np.pi / 2, 7)[1:]))
@@ -102,12 +106,12 @@ def tentacle_shape():
             triangles += [(a, b, b + segments), (a, b + segments, a + segments)]
     last = (rings - 2) * segments
     triangles += [(last + s, last + (s + 1) % segments, len(points) - 1) for s in range(segments)]
-    positions, triangles = snap(points), np.array(triangles)
+    positions, faces = snap(points), np.array(triangles)
     heights = np.append(np.repeat(share[: rings - 1], segments), 1.0)
-    return Shape(positions, triangles, smooth_normals(positions, triangles)), heights
+    return Shape(positions, faces, smooth_normals(positions, faces)), heights
 
 
-def skin_weights(heights):
+def skin_weights(heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Each vertex hangs between two joints, blended by a smooth step: four places a vertex, two in use."""
     place = np.clip(heights * JOINTS - 0.5, 0, JOINTS - 1)
     lower = np.minimum(place.astype(int), JOINTS - 2)
@@ -120,7 +124,7 @@ def skin_weights(heights):
     return joints, weights
 
 
-def tentacle(glb: Glb):
+def tentacle(glb: Glb) -> tuple[int, list[int]]:
     shape, heights = tentacle_shape()
     joints, weights = skin_weights(heights)
     band = 0.5 + 0.5 * np.cos(heights * 2 * np.pi * 9)
@@ -154,7 +158,7 @@ def flower(glb: Glb) -> int:
     petals = 0.62 * (1 + 0.42 * round_about**1.5 * np.cos(5 * azimuth) + 0.10 * d[:, 1])
     cushion = 0.56 / (np.abs(d) ** 5).sum(axis=1) ** (1 / 5)
 
-    def standing(radius):
+    def standing(radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         points = d * np.asarray(radius)[..., None]
         points[:, 1] += 0.003 - points[:, 1].min()
         points = snap(points)
@@ -173,7 +177,7 @@ def flower(glb: Glb) -> int:
     return glb.node("flower", FLOWER, turn((0, 1, 0), 20), mesh=mesh)
 
 
-def waving(bones):
+def waving(bones: list[int]) -> list[tuple[Any, ...]]:
     """Each joint sways round z and leans round x, later the higher it sits; the lowest stands still, or its
     rim would dip into the floor."""
     times = np.arange(17) * SECONDS / 16
@@ -187,21 +191,21 @@ def waving(bones):
     return channels
 
 
-def _about_z(a):
+def _about_z(a: float) -> np.ndarray:
     return np.array([(np.cos(a), -np.sin(a), 0), (np.sin(a), np.cos(a), 0), (0, 0, 1)])
 
 
-def _about_x(a):
+def _about_x(a: float) -> np.ndarray:
     return np.array([(1, 0, 0), (0, np.cos(a), -np.sin(a)), (0, np.sin(a), np.cos(a))])
 
 
-def blooming(node):
+def blooming(node: int) -> tuple[Any, ...]:
     """Flower, ball, cushion, ball: flat tangents, so that no weight overshoots."""
     weights = [(0, 0), (1, 0), (0.1, 0.1), (0, 1), (0, 0)]
     return node, "weights", np.arange(5.0), [[(0, 0), w, (0, 0)] for w in weights], "CUBICSPLINE"
 
 
-def camera_channels(node):
+def camera_channels(node: int) -> tuple[list[tuple[Any, ...]], np.ndarray]:
     """Translation on a smooth curve; the rotation's keys look at the spheres from that same curve."""
     times = np.arange(5) * SECONDS / 4
     keys = cubic_loop(times, [(-0.9, 2.05, 6.6), (0.1, 2.3, 6.35), (1.1, 2.1, 6.5), (0.2, 1.85, 6.8)])

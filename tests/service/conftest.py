@@ -37,7 +37,7 @@ def sheafd(start: Callable[..., Service]) -> Service:
 class Gate:
     """A FIFO that holds a worker until it is opened."""
 
-    def __init__(self, path: pathlib.Path):
+    def __init__(self, path: pathlib.Path) -> None:
         self.path = str(path)
         os.mkfifo(path)
 

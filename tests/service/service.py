@@ -42,11 +42,11 @@ class Service:
         env: dict[str, str] | None = None,
         prefix: list[str] | None = None,
         readable: list[str] | None = None,
-    ):
+    ) -> None:
         self.data = data
         free = [] if "--min-free" in options else ["--min-free", "0"]  # whatever the machine's disk
         # The fake worker is a Python program, and keeps ledgers and gates beside the service's data.
-        places = readable or [sys.base_prefix, sys.prefix, HERE, data.parent]
+        places: list[str | pathlib.Path] = [*readable] if readable else [sys.base_prefix, sys.prefix, HERE, data.parent]
         seen = [word for place in places for word in ("--worker-reads", str(place))]
         self.process = subprocess.Popen(
             [

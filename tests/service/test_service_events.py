@@ -91,7 +91,7 @@ def test_long_poll(sheafd: Service, gate: Gate) -> None:
     job = sheafd.accepted(gltf(gates={"0": gate.path}), {"frames": 0})
     sheafd.wait(job, "running")
 
-    def poll(wait: object, after: int) -> dict:
+    def poll(wait: float | str, after: int) -> dict:
         reply = sheafd.http.get(f"/v1/jobs/{job}/events", params={"wait": wait, "after": after})
         assert reply.status_code == 200, reply.text
         return reply.json()

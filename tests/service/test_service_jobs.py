@@ -202,7 +202,7 @@ def test_listing(sheafd: Service) -> None:
     failed = sheafd.accepted(gltf(exit={"code": 3, "message": "bad"}), {"frames": 0})
     sheafd.wait(failed)
 
-    def page(**query: object) -> dict:
+    def page(**query: str | int) -> dict:
         return sheafd.http.get("/v1/jobs", params=query).json()
 
     assert [j["id"] for j in page()["jobs"]] == [failed, *reversed(jobs)]

@@ -11,6 +11,7 @@ import subprocess
 import zipfile
 import zlib
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -44,7 +45,7 @@ SMALL = {
 }
 
 # What is submitted, and the limit that it passes with the value that is told.
-CASES = {
+CASES: dict[str, tuple[int, dict[str, Any], int, int | None]] = {
     "max-upload": (413, {"scene": gltf() + b" " * (2 << 20)}, 1 << 20, None),
     "max-parts": (413, {"scene": gltf(), "parts": [("file", (str(i), b"")) for i in range(8)]}, 8, 9),
     "max-unpacked": (

@@ -15,7 +15,17 @@ from service import FAKE, PATIENCE, program
 @pytest.fixture
 def second(tmp_path: pathlib.Path) -> Iterator[subprocess.Popen[str]]:
     """A service on a folder that somebody has locked."""
-    command = [program("sheafd"), "--listen", "127.0.0.1:0", "--data", tmp_path, "--sheaf", FAKE, "--min-free", "0"]
+    command: list[str | pathlib.Path] = [
+        program("sheafd"),
+        "--listen",
+        "127.0.0.1:0",
+        "--data",
+        tmp_path,
+        "--sheaf",
+        FAKE,
+        "--min-free",
+        "0",
+    ]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         yield process
         process.kill()

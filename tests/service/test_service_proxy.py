@@ -37,7 +37,7 @@ def proxied(start: Callable[..., Service], tmp_path: pathlib.Path) -> Iterator[t
     tls = tmp_path / "tls"
     tls.mkdir()
     made = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=localhost", "-days", "2"]
-    made += ["-addext", "subjectAltName=IP:127.0.0.1", "-keyout", tls / "key.pem", "-out", tls / "cert.pem"]
+    made += ["-addext", "subjectAltName=IP:127.0.0.1", "-keyout", f"{tls}/key.pem", "-out", f"{tls}/cert.pem"]
     subprocess.run(made, check=True, capture_output=True, timeout=PATIENCE)
     port = free_port()
     text = CONF.read_text().replace("/tmp/", f"{tmp_path}/").replace("/etc/nginx/tls", str(tls))
