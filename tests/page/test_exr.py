@@ -13,7 +13,7 @@ import OpenEXR
 import pytest
 
 import sheaf
-from conftest import PATIENCE_MS, SCENES, PageError
+from conftest import PATIENCE_MS, SCENES, PageError, expect
 
 Visit = Callable[..., Any]
 

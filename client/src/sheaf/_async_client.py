@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The client of one service, for asyncio: the twin of `_client`."""
+"""The client of one service."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class AsyncClient:
-    """Talks to one sheafd without blocking; takes and raises what `Client` does.
+    """Talks to one sheafd. An async context manager; connections are kept and reused until it closes.
 
     ::
 
@@ -75,7 +75,25 @@ class AsyncClient:
         idempotency_key: str | None = None,
         **settings: Unpack[RenderSettings],
     ) -> AsyncJob:
-        """Sends a scene to be rendered, as `Client.submit` does."""
+        """Sends a scene to be rendered.
+
+        Args:
+            scene: a .glb or .gltf file, sent with the buffers and images beside it; a .zip; or the bytes of one.
+            camera: a camera path: its file, its document, or a `CameraPath`; None takes the scene's first camera.
+            idempotency_key: the same key and the same job gives the job that is there already. Every call without
+                one has a key of its own, so that trying again never makes a second job.
+            settings: as `RenderSettings` lists them: frames, size, fps, animation, spp, depth, strategy, aov, ...
+
+        Returns:
+            The job, queued or running.
+
+        Raises:
+            SceneError: the scene or camera cannot be read, or a file that it needs is not beside it.
+            InvalidRequest: the service finds settings, scene or camera bad.
+            TooLarge: a limit was exceeded.
+            Unavailable: the service takes no jobs now.
+            TypeError: a setting has an unknown name.
+        """
         call = _calls.submit(scene, camera, settings, idempotency_key or uuid.uuid4().hex)
         return AsyncJob(self._session, await self._session.call(call))
 
@@ -88,7 +106,12 @@ class AsyncClient:
         return AsyncJob(self._session, await self._session.call(_calls.job(job_id)))
 
     async def jobs(self, state: JobState | None = None, *, page_size: int | None = None) -> AsyncIterator[AsyncJob]:
-        """All jobs, newest first, page by page as they are asked for."""
+        """All jobs, newest first, page by page as they are asked for.
+
+        Args:
+            state: only those in this state.
+            page_size: jobs per request; the service's default where not given.
+        """
         cursor: str | None = None
         while True:
             page = await self._session.call(_calls.jobs(state, cursor, page_size))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A job on the service, for asyncio: the twin of `_job`."""
+"""A job on the service."""
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import os
 from collections.abc import AsyncGenerator, Callable, Iterable
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from . import _calls
 from ._async_session import AsyncSession
+from ._async_workers import aside, in_order
 from ._download import Wanted, plan
 from ._errors import NotFound, SheafError
 from ._exr import Frame, read_exr
@@ -22,7 +22,10 @@ from ._watch import Listen, Poll, SseParser, Watch
 
 
 class AsyncJob(JobView):
-    """A submitted animation; as `Job`, with methods to await.
+    """A submitted animation; made by `AsyncClient.submit`, `AsyncClient.job` and `AsyncClient.jobs`.
+
+    What it says about itself is what the service said last: `refresh` and `wait` bring it up to date. Every method
+    that asks the service raises `TransportError`, `ProtocolError` or an `ApiError`, `NotFound` once the job is gone.
 
     Attributes:
         info: all that the service said last.
@@ -38,7 +41,14 @@ class AsyncJob(JobView):
         return self
 
     async def events(self, after: str | None = None, timeout: float | None = None) -> AsyncGenerator[Event, None]:
-        """What happens to the job, as `Job.events` tells it.
+        """What happens to the job, from its beginning (or after the event with that id) to its end.
+
+        Listens to server-sent events, going on after the last one where the connection is lost, and turns to long
+        polls where streams do not get through.
+
+        Args:
+            after: id of an event; those up to it are left out.
+            timeout: seconds from now after which to stop waiting; None waits for ever.
 
         Raises:
             Timeout: the job is not over by then.
@@ -69,7 +79,14 @@ class AsyncJob(JobView):
     async def wait(
         self, progress: Callable[[Progress], object] | bool | None = None, timeout: float | None = None
     ) -> AsyncJob:
-        """Waits until the job is over, as `Job.wait` does.
+        """Waits until the job is over.
+
+        Args:
+            progress: called with every change; True draws a bar on standard error.
+            timeout: seconds; None waits for ever.
+
+        Returns:
+            The job itself, in state "done".
 
         Raises:
             JobFailed: it failed; `code` and `message` say why.
@@ -99,19 +116,38 @@ class AsyncJob(JobView):
                 await self._session.sleep(watch.lost(error, streaming=False))
 
     async def frame(self, number: int) -> Frame:
-        """A rendered frame as arrays; fails as `Job.frame` does."""
+        """A rendered frame as arrays.
+
+        Raises:
+            NotFound: the job has no such frame.
+            Conflict: it is not rendered yet.
+            FrameError: what came is no frame.
+        """
         data = await self._session.call(_calls.frame(self.id, number, "exr"))
-        return await asyncio.to_thread(read_exr, data, number)
+        return await aside(read_exr, data, number)
 
     async def frames(self, numbers: Iterable[int] | None = None) -> AsyncGenerator[Frame, None]:
-        """Frames as arrays, one in memory at a time; None gives all that are rendered by now."""
+        """Frames as arrays, one in memory at a time.
+
+        Args:
+            numbers: which; None gives all that are rendered by now.
+
+        Raises:
+            As `frame`.
+        """
         if numbers is None:
-            numbers = (await self.refresh()).info.rendered
+            await self.refresh()
+            numbers = self.info.rendered
         for number in numbers:
             yield await self.frame(number)
 
     async def preview(self, number: int) -> bytes:
-        """A frame's tone-mapped preview, as PNG; fails as `Job.preview` does."""
+        """A frame's tone-mapped preview, as PNG.
+
+        Raises:
+            NotFound: the job has no such frame.
+            Conflict: it is not rendered yet.
+        """
         return await self._session.call(_calls.frame(self.id, number, "png"))
 
     async def stats(self) -> Stats:
@@ -127,7 +163,10 @@ class AsyncJob(JobView):
         return await self._session.call(_calls.log(self.id))
 
     async def cancel(self) -> AsyncJob:
-        """Stops the job, keeping the frames that are whole; does nothing where it is over."""
+        """Stops the job, keeping the frames that are whole; does nothing where it is over.
+
+        Returns the job itself; its state is "cancelled" once the renderer has stopped, within about a second.
+        """
         self.info = await self._session.call(_calls.cancel(self.id))
         return self
 
@@ -135,6 +174,7 @@ class AsyncJob(JobView):
         """Stops the job and removes it with all its frames; does nothing where it is gone already."""
         with contextlib.suppress(NotFound):
             await self._session.call(_calls.delete(self.id))
+            # A service may only stop what runs, and remove it once it has ended.
             await self.refresh()
             await self._session.call(_calls.delete(self.id))
 
@@ -149,7 +189,23 @@ class AsyncJob(JobView):
         on_file: Callable[[int, Path], object] | None = None,
         connections: int = 4,
     ) -> list[Path]:
-        """Fetches frames into a folder, several at once, as `Job.download` does.
+        """Fetches frames into a folder, made where it is missing, several at once.
+
+        Files appear under their name only when whole, with the checksum that the service tells. One that is there
+        already and the same is left alone.
+
+        Args:
+            folder: where to.
+            previews: the PNG beside each frame too.
+            overwrite: fetch again what is there.
+            name: pattern of the names, the run of `#` becomes the frame number; None takes the service's names, which
+                are the scene's with the number in four digits, or the setting `name`.
+            numbers: which frames; None gives all that are rendered by now.
+            on_file: called with frame number and path as each file is there, in frame order.
+            connections: how many files are fetched at once.
+
+        Returns:
+            Paths of all files, fetched or left alone, in frame order.
 
         Raises:
             TransportError: a file did not come whole, again and again.
@@ -157,27 +213,21 @@ class AsyncJob(JobView):
             ValueError: the name pattern is not one.
         """
         target = Path(folder)
-        files = plan((await self.refresh()).info, target, numbers, name, previews)
+        await self.refresh()
+        files = plan(self.info, target, numbers, name, previews)
         target.mkdir(parents=True, exist_ok=True)
-        room = asyncio.Semaphore(max(1, connections))
-        coming = [asyncio.ensure_future(self._fetch(wanted, overwrite, room)) for wanted in files]
-        try:
-            for wanted, task in zip(files, coming, strict=True):
-                await task
+        fetched = in_order(lambda wanted: self._fetch(wanted, overwrite), files, connections)
+        async with contextlib.aclosing(fetched) as coming:
+            async for wanted in coming:
                 if on_file:
                     on_file(wanted.number, wanted.path)
-        finally:
-            for task in coming:
-                task.cancel()
-            await asyncio.gather(*coming, return_exceptions=True)
         return [wanted.path for wanted in files]
 
-    async def _fetch(self, wanted: Wanted, overwrite: bool, room: asyncio.Semaphore) -> None:
-        async with room:
-            is_there = wanted.path.is_file() and not overwrite
-            have = await asyncio.to_thread(file_sha256, wanted.path) if is_there else None
-            if have is None or have != wanted.sha256:
-                await self._session.patiently(lambda: self._fetch_once(wanted, have))
+    async def _fetch(self, wanted: Wanted, overwrite: bool) -> None:
+        is_there = wanted.path.is_file() and not overwrite
+        have = await aside(file_sha256, wanted.path) if is_there else None
+        if have is None or have != wanted.sha256:
+            await self._session.patiently(lambda: self._fetch_once(wanted, have))
 
     async def _fetch_once(self, wanted: Wanted, have: str | None) -> None:
         async with self._session.stream(_calls.frame(self.id, wanted.number, wanted.kind, have)) as response:
@@ -186,7 +236,7 @@ class AsyncJob(JobView):
             with whole_file(wanted.path) as file:
                 async for block in response.aiter_bytes(1 << 20):
                     file.write(block)
-                await asyncio.to_thread(file.finish, response, wanted.sha256)
+                await aside(file.finish, response, wanted.sha256)
 
     async def _listen(self, watch: Watch) -> AsyncGenerator[Event, None]:
         async with self._session.stream(_calls.listen(self.id, watch.last)) as response:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""I/O that does not block: the twin of `_session`, for asyncio."""
+"""Sends the calls that `_calls` describes, and reads the answers."""
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -11,9 +10,10 @@ from typing import Any, TypeVar
 
 import httpx
 
+from ._async_workers import aside, sleep
 from ._errors import SheafError
 from ._http import Call, RetryPolicy, api_error, is_answer, translated
-from ._session import build_request, checked_url, own_headers, tell_digest
+from ._request import build_request, checked_url, own_headers, tell_digest
 
 T = TypeVar("T")
 
@@ -40,7 +40,7 @@ class AsyncSession:
 
     async def sleep(self, seconds: float) -> None:
         """The only place that sleeps."""
-        await asyncio.sleep(seconds)
+        await sleep(seconds)
 
     def now(self) -> float:
         """The clock of deadlines, seconds."""
@@ -81,7 +81,7 @@ class AsyncSession:
         """Sends and reads the answer, with one try."""
         with contextlib.ExitStack() as files:
             request = build_request(self._http, call, files)
-            await asyncio.to_thread(tell_digest, request, call)
+            await aside(tell_digest, request, call)
             with translated(f"{call.method} {request.url}"):
                 response = await self._http.send(request)
         if not is_answer(call, response):

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# Made by client/make_sync.py from _async_client.py: change that.
 """The client of one service."""
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ class Client:
     ::
 
         with Client("http://127.0.0.1:8080") as client:
-            job = client.submit("box.glb", frames="0-23", size="640x360").wait(progress=True)
+            job = client.submit("box.glb", frames="0-23", size="640x360")
+            job.wait(progress=True)
             for frame in job.frames():
                 print(frame.number, frame.rgba.mean())
 

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Which files a download brings, and bringing them. `_async_job` brings the same ones without blocking."""
+"""Which files a download brings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from . import _calls
-from ._files import file_sha256, whole_file
 from ._models import FrameState, JobInfo
 from ._names import FrameNames
-from ._session import Session
 
 
 @dataclass(frozen=True)
@@ -42,45 +38,6 @@ def plan(info: JobInfo, folder: Path, numbers: Iterable[int] | None, name: str |
         if previews:
             wanted.append(Wanted(number, "png", path.with_suffix(".png")))
     return wanted
-
-
-def fetch(session: Session, job_id: str, wanted: Wanted, overwrite: bool) -> None:
-    """Brings one file, again where the session's policy says so; leaves it alone where it is there and the same.
-
-    Raises:
-        TransportError: it did not come whole, again and again.
-    """
-    have = file_sha256(wanted.path) if wanted.path.is_file() and not overwrite else None
-    if have is None or have != wanted.sha256:
-        session.patiently(lambda: _fetch_once(session, job_id, wanted, have))
-
-
-def fetch_all(
-    session: Session, job_id: str, files: Sequence[Wanted], overwrite: bool, connections: int
-) -> Iterator[Wanted]:
-    """Brings files, several at once; tells of each once it is there, in the order given.
-
-    The first failure ends it: what is not begun by then is not fetched any more.
-    """
-    with ThreadPoolExecutor(max(1, connections), "sheaf-download") as pool:
-        coming = [pool.submit(fetch, session, job_id, wanted, overwrite) for wanted in files]
-        try:
-            for wanted, future in zip(files, coming, strict=True):
-                future.result()
-                yield wanted
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _fetch_once(session: Session, job_id: str, wanted: Wanted, have: str | None) -> None:
-    call = _calls.frame(job_id, wanted.number, wanted.kind, have)
-    with session.stream(call) as response:
-        if response.status_code == 304:
-            return
-        with whole_file(wanted.path) as file:
-            for block in response.iter_bytes(1 << 20):
-                file.write(block)
-            file.finish(response, wanted.sha256)
 
 
 def _service_name(frame: FrameState) -> str:
