@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 import sheaf
-from fake_service import FakeJob, FakeService, cut_short, hang_up, problem
+from fake_service import FakeJob, FakeService
+from faults import cut_short, hang_up, problem
 
 Use = Callable[[sheaf.AsyncClient], Awaitable[Any]]
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from fake_service import FakeJob, FakeService, problem
+from fake_service import FakeJob, FakeService
+from faults import problem
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ import httpx
 import pytest
 
 import sheaf
-from fake_service import FakeJob, FakeService, Handler, cut_short, problem, sha256
+from fake_service import FakeJob, FakeService, Handler, sha256
+from faults import cut_short, problem
 
 
 def test_download(client: sheaf.Client, done_job: FakeJob, tmp_path: Path, exr: bytes) -> None:

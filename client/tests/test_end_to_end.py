@@ -11,7 +11,6 @@ import json
 import os
 import queue
 import re
-import struct
 import subprocess
 import threading
 from collections.abc import Iterator
@@ -23,61 +22,12 @@ import numpy as np
 import pytest
 
 import sheaf
+from built import program, triangle_glb
 from sheaf.cli import main
 
 pytestmark = pytest.mark.filterwarnings("default:::distributed", "default:::tornado")
 
 START_SECONDS = 60  # a first start may compile shaders
-
-
-def program(name: str) -> Path:
-    build = Path(os.environ.get("SHEAF_BUILD") or Path(__file__).parents[2] / "build")
-    found = [path for path in build.rglob(name) if path.is_file() and os.access(path, os.X_OK)]
-    if not found and os.environ.get("SHEAF_BUILD"):
-        pytest.fail(f"no program {name} below {build}")
-    if not found:
-        pytest.skip(f"no program {name} below {build}")
-    return found[0]
-
-
-def triangle_glb() -> bytes:
-    """A triangle in the plane z = 0 that is seen from +Z and moves by 1 m in a second."""
-    positions = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], np.float32)
-    times = np.array([0, 1], np.float32)
-    moves = np.array([[0, 0, 0], [1, 0, 0]], np.float32)
-    blocks = [array.tobytes() for array in (positions, times, moves)]
-    offsets = np.cumsum([0] + [len(block) for block in blocks]).tolist()
-    views = [
-        {"buffer": 0, "byteOffset": offset, "byteLength": len(block)}
-        for offset, block in zip(offsets, blocks, strict=False)
-    ]
-    document = {
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "buffers": [{"byteLength": offsets[-1]}],
-        "bufferViews": views,
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
-            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
-            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"},
-        ],
-        "animations": [
-            {
-                "samplers": [{"input": 1, "output": 2}],
-                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
-            }
-        ],
-    }
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    binary = b"".join(blocks)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
-
-
 CAMERA = sheaf.CameraPath.look_at_keys([(0, (0, 0, 4), (0, 0, 0))])
 SETTINGS: sheaf.RenderSettings = {"frames": "0,6-12:6", "fps": 24, "size": (48, 32), "aov": "Z,N,id", "depth": 1}
 OPTIONS = "--frames 0,6-12:6 --fps 24 --size 48x32 --aov Z,N,id --depth 1 --progress none"  # the same

@@ -10,7 +10,8 @@ import pytest
 
 import sheaf
 from conftest import colour
-from fake_service import FakeJob, FakeService, Handler, hang_up, problem
+from fake_service import FakeJob, FakeService, Handler
+from faults import hang_up, problem
 
 FRAME_EVENTS: list[tuple[str, dict[str, Any]]] = [
     ("state", {"state": "running"}),

@@ -50,7 +50,7 @@ def test_every_compression_is_read_as_it_is(visit: Visit, client: sheaf.Client, 
 def test_a_frame_of_another_compression_is_previewed_and_downloaded(
     visit: Visit, client: sheaf.Client, compression: str
 ) -> None:
-    settings = {"size": "70x75", "strategy": "reference", "compression": compression}
+    settings: dict[str, Any] = {"size": "70x75", "strategy": "reference", "compression": compression}
     job = client.submit(SCENES / "whitted.glb", frames=0, **settings).wait(timeout=PATIENCE_MS / 1000)
     page = visit(f"#job={job.id}")
     page.click("#open")

@@ -93,6 +93,11 @@ def run(arguments: argparse.Namespace, report: Report) -> None:
         )
     if len(result.versions) > 1:
         report.warning(f"workers have different versions: {', '.join(sorted(result.versions))}")
+    if result.outdated:
+        report.warning(
+            f"frames that were there and were rendered again: {result.outdated}, "
+            "of another scene, camera, setting or version, or not whole"
+        )
     if arguments.stats:
         write_whole(Path(arguments.stats), json.dumps(_sums(result), indent=1) + "\n")
     report.finish(
@@ -106,6 +111,7 @@ def _sums(result: Any) -> dict[str, Any]:
         "schema": 1,
         "frames": len(result.files),
         "skipped": result.skipped,
+        "outdated": result.outdated,
         "seconds": result.seconds,
         "worker_seconds": result.worker_seconds,
         "retried": result.retried,

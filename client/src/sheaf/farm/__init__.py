@@ -5,6 +5,7 @@ Wants the extra: `pip install 'sheaf[farm]'`, here and where the workers run.
 """
 
 from ._ledger import FarmOptions
-from ._render import FarmResult, render
+from ._render import render
+from ._result import FarmResult
 
 __all__ = ["FarmOptions", "FarmResult", "render"]

@@ -8,9 +8,7 @@ import hashlib
 import os
 import queue
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +23,7 @@ from .._models import Progress
 from .._names import FrameNames, default_pattern
 from .._settings import wire_settings
 from ._ledger import Chunk, FarmOptions, Ledger
+from ._result import FarmResult, add_sums
 from ._scene import Bundle, ScenePlugin, bundle, plugin_name
 from ._stock import Inputs, is_current, wanted_inputs
 from ._task import Order, Piece, Report, render_chunk
@@ -32,35 +31,6 @@ from ._workers import Workers
 
 TICK_SECONDS = 1.0
 """How often lateness is looked at where nothing happens."""
-
-
-@dataclass
-class FarmResult:
-    """What a farm made of an animation.
-
-    Attributes:
-        files: paths of all whole files by frame, the EXR first.
-        seconds: from beginning to end.
-        worker_seconds: that the program ran, over all workers: what it costs.
-        totals: the engine's sums over all chunks: frames, rays and tests by kind, wall_ms.
-        frames_by_host: how many frames came from which machine.
-        versions: of the engine; more than one means that frames may differ in their last bits.
-        retried: how often a frame was tried again.
-        copies: how many chunks were so late that another worker was given a copy.
-        skipped: frames that were there already.
-        outdated: frames that were there of another scene, camera, setting or version, and were rendered again.
-    """
-
-    files: dict[int, list[Path]] = field(default_factory=dict)
-    seconds: float = 0.0
-    worker_seconds: float = 0.0
-    totals: dict[str, Any] = field(default_factory=dict)
-    frames_by_host: Counter[str] = field(default_factory=Counter)
-    versions: set[str] = field(default_factory=set)
-    retried: int = 0
-    copies: int = 0
-    skipped: int = 0
-    outdated: int = 0
 
 
 def render(
@@ -273,7 +243,7 @@ class _Run:
         result.worker_seconds += report.seconds
         result.versions.add(report.version)
         result.frames_by_host[report.host] += len(new)
-        _add(result.totals, report.totals)
+        add_sums(result.totals, report.totals)
         for frame in new:
             result.files[frame] = paths[frame]
             for path in paths[frame]:
@@ -299,16 +269,3 @@ class _Run:
 def _remove(paths: Iterable[Path]) -> None:
     for path in paths:
         path.unlink(missing_ok=True)
-
-
-def _add(sums: dict[str, Any], more: Mapping[str, Any]) -> None:
-    """Adds numbers, also those within; rates and shares are no sums and are left out."""
-    for name, value in more.items():
-        if isinstance(value, Mapping):
-            _add(sums.setdefault(name, {}), value)
-        elif isinstance(value, (int, float)) and not isinstance(value, bool) and not _is_rate(name):
-            sums[name] = sums.get(name, 0) + value
-
-
-def _is_rate(name: str) -> bool:
-    return name.startswith(("tests_per_ray", "reduction", "rays_per_second", "peak"))

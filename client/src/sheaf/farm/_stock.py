@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import OpenEXR
 
 from .._frames import frame_list
@@ -40,9 +41,10 @@ def wanted_inputs(order: Order, home: str | None = None) -> dict[int, Inputs] | 
 
 
 def found_inputs(path: Path) -> Inputs | None:
-    """What decided a frame, as its file's attributes tell; None where it does not open or lacks one."""
+    """What decided a frame, as its file's attributes tell; None where one is missing, or the file is not whole."""
     try:
-        header = OpenEXR.File(str(path), header_only=True).header()
+        # With its pixels: the header of a file that was cut short is there.
+        header = OpenEXR.File(str(path)).header()
         software = header["software"]
         if not software.startswith("Sheaf "):
             return None
@@ -51,7 +53,7 @@ def found_inputs(path: Path) -> Inputs | None:
             "scene": header["sheaf:sceneHash"],
             "settings": header["sheaf:settings"],
             "frame": int(header["sheaf:frame"]),
-            "time": float(header["sheaf:time"]),
+            "time": np.asarray(header["sheaf:time"], np.float64).item(),  # OpenEXR gives an array of one
         }
     except (RuntimeError, ValueError, KeyError, TypeError, AttributeError):
         return None
