@@ -103,23 +103,22 @@ int Accessors::width(int accessor) const {
 Accessors::Source Accessors::window(const std::string& place, int view_index, std::uint64_t offset, std::size_t count,
                                     std::size_t element, std::size_t component) const {
   const auto slot = static_cast<std::size_t>(view_index);
-  const tinygltf::BufferView& view = file_.model.bufferViews[slot];
-  const std::span<const std::uint8_t> bytes = file_.bytes->view(file_, slot);
-  if ((view.byteOffset + offset) % component != 0) {
+  const BufferView view = file_.bytes->view(file_, slot);
+  if ((view.offset + offset) % component != 0) {
     file_.fail(place, "its data is not aligned to " + std::to_string(component) + " bytes");
   }
-  const std::uint64_t stride = view.byteStride == 0 ? element : view.byteStride;
+  const std::uint64_t stride = view.stride == 0 ? element : view.stride;
   if (stride < element) {
     file_.fail(place, "byteStride " + std::to_string(stride) + " is smaller than an element of " +
                           std::to_string(element) + " bytes");
   }
   if (stride % component != 0) file_.fail(place, "byteStride is not a multiple of the component's size");
   // count ≤ 2^40 and stride ≤ 252 by the checks before this one: no overflow.
-  if (offset > bytes.size() || (count - 1) * stride + element > bytes.size() - offset) {
+  if (offset > view.bytes.size() || (count - 1) * stride + element > view.bytes.size() - offset) {
     file_.fail(place, std::to_string(count) + " elements end outside " + at("bufferViews", slot) + " of " +
-                          std::to_string(bytes.size()) + " bytes");
+                          std::to_string(view.bytes.size()) + " bytes");
   }
-  return {bytes.data() + offset, static_cast<std::size_t>(stride), count};
+  return {view.bytes.data() + offset, static_cast<std::size_t>(stride), count};
 }
 
 Accessors::Source Accessors::dense(int index) const {

@@ -81,15 +81,16 @@ std::span<const std::uint8_t> GltfBytes::buffer(const GltfFile& file, std::size_
   return buffers_.emplace(index, std::move(resource)).first->second.bytes;
 }
 
-std::span<const std::uint8_t> GltfBytes::view(const GltfFile& file, std::size_t index) {
+BufferView GltfBytes::view(const GltfFile& file, std::size_t index) {
   file.require("bufferViews", index);
-  const Range range = range_of(file.json.at("bufferViews").at(index));
+  const json& object = file.json.at("bufferViews").at(index);
+  const Range range = range_of(object);
   const std::span<const std::uint8_t> bytes = buffer(file, range.buffer);
   if (!range.within(bytes.size())) file.fail(at("bufferViews", index), range.outside(bytes.size()));
   const auto length = file.json.at("buffers").at(range.buffer).at("byteLength").get<std::uint64_t>();
   if (views_.insert(index).second && !range.within(length) && bytes.size() > length)
     file.warn(at("bufferViews", index), range.outside(length) + ", but not of what was read");
-  return bytes.subspan(range.offset, range.length);
+  return {bytes.subspan(range.offset, range.length), range.offset, object.value("byteStride", std::uint64_t{0})};
 }
 
 std::span<const std::uint8_t> GltfBytes::image(const GltfFile& file, std::size_t index) {
@@ -102,7 +103,7 @@ std::span<const std::uint8_t> GltfBytes::image(const GltfFile& file, std::size_t
                             std::numeric_limits<std::uint64_t>::max());
     resource.bytes = resource.own;
   } else if (const json* view_index = member(object, "bufferView")) {
-    resource.bytes = view(file, view_index->get<std::size_t>());
+    resource.bytes = view(file, view_index->get<std::size_t>()).bytes;
   } else {
     file.fail(at("images", index), "has neither uri nor bufferView");
   }

@@ -17,14 +17,20 @@ namespace sheaf {
 
 struct GltfFile;
 
+struct BufferView {
+  std::span<const std::uint8_t> bytes;
+  std::uint64_t offset = 0;  // of the bytes in their buffer
+  std::uint64_t stride = 0;  // between elements; 0: they follow each other
+};
+
 class GltfBytes {
  public:
   /// `binary` lies in `scene_bytes`.
   GltfBytes(SceneFolder folder, std::vector<std::uint8_t> scene_bytes, std::span<const std::uint8_t> binary)
       : folder_(std::move(folder)), scene_bytes_(std::move(scene_bytes)), binary_(binary) {}
 
-  /// A bufferView's bytes. Its buffer may hold more or fewer than it says, as long as the view lies inside.
-  [[nodiscard]] std::span<const std::uint8_t> view(const GltfFile& file, std::size_t index);
+  /// A bufferView. Its buffer may hold more or fewer bytes than it says, as long as the view lies inside.
+  [[nodiscard]] BufferView view(const GltfFile& file, std::size_t index);
 
   /// An image's encoded bytes.
   [[nodiscard]] std::span<const std::uint8_t> image(const GltfFile& file, std::size_t index);

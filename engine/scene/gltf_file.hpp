@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One glTF file opened: its JSON checked against the rules below, then read by tinygltf. Everything that the rest of
-// the loader needs from the file passes through here, so that no index, size or URI is used before it was checked.
+// One glTF file opened. Its text is parsed once; that document is mended, checked against the schema's rules, and given
+// to tinygltf for what it has a model of. Everything that the rest of the loader needs from the file passes through
+// here, so that no index, size or URI is used before it was checked.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -23,9 +24,8 @@ namespace sheaf {
 struct GltfFile {
   std::string path;
   LoadLimits limits;
-  nlohmann::json json;  // the same document as `model`: what tinygltf does not read (extensions) is read from here
-  tinygltf::Model
-      model;  // without buffers, images, cameras and animations: those are read from the JSON and by `bytes`
+  nlohmann::json json;    // for extensions, and for what `model` does not have
+  tinygltf::Model model;  // without buffers, bufferViews, images, cameras, animations and lights
   std::unique_ptr<GltfBytes> bytes;
   BrokenObjects broken;
   mutable WarningList warnings;
