@@ -74,8 +74,8 @@ void DeviceScene::bind(Recorder& r) const {
   r.bind(ROLE_DEFORM, deforms_);
   r.bind(ROLE_JOINTS, joints_);
   r.bind(ROLE_MORPHS, morphs_);
-  r.bind(ROLE_SCAN_IN, matrices_);
-  r.bind(ROLE_SCAN_OUT, weights_);
+  r.bind(ROLE_JOINT_MATRICES, matrices_);
+  r.bind(ROLE_MORPH_WEIGHTS, weights_);
 }
 
 void DeviceScene::set_addresses(gpu::Frame& frame) const {

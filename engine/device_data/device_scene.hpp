@@ -15,8 +15,8 @@ namespace sheaf {
 
 struct Motion {  // what a frame's animate and objects stages have to do; all zero when nothing moved
   std::uint32_t moved_instances = 0;
-  std::uint32_t triangle_blocks = 0;  // in ROLE_WORK of animate_triangles
-  std::uint32_t vertex_blocks = 0;    // in ROLE_WORK of animate_vertices
+  std::uint32_t triangle_blocks = 0;  // in ROLE_ANIMATE_BLOCKS of animate_triangles
+  std::uint32_t vertex_blocks = 0;    // in ROLE_ANIMATE_BLOCKS of animate_vertices
   std::vector<std::pair<std::uint32_t, std::uint32_t>>
       refit;  // (first, count) in the refit list, a height each, leaves first
 };

@@ -48,8 +48,8 @@ struct Plan {
   bool sorts = false, ray_hierarchy = false, object_hierarchy = false, bundles = false, packets = false,
        spheres = false;
   bool classes = false;  // rays are sorted by class, also camera rays
-  bool transform_on_fetch =
-      false;  // triangles are transformed by their instances when read, and not kept in world space
+  /// Triangles are transformed by their instances when read, and not kept in world space.
+  bool transform_on_fetch = false;
   std::shared_ptr<const Coincidence> coincidence;  // the scene's
   std::vector<LeftOut> left_out;
 };

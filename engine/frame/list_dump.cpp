@@ -6,6 +6,8 @@
 #include <bit>
 #include <numeric>
 
+#include "interface/push/objects.h"
+
 namespace sheaf {
 namespace {
 
@@ -36,10 +38,8 @@ void ListDump::triangles(Recorder& recorder, DumpWriter& writer) {
 }
 
 void ListDump::read_triangles(Recorder& recorder, std::size_t first, std::size_t count) {
-  const struct {
-    std::uint64_t to;
-    std::uint32_t first, count;
-  } push{triangles_.address(), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
+  const gpu::DumpTrianglesPush push{triangles_.address_words(), static_cast<std::uint32_t>(first),
+                                    static_cast<std::uint32_t>(count)};
   recorder.dispatch(corners_, push, (count + gpu::GROUP - 1) / gpu::GROUP);
   recorder.submit_and_wait();
   std::copy_n(triangles_.view<float>().begin(), count * 9, &host_corners_[first * 9]);

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/animate.h"
+
 namespace sheaf {
 
 Animate::Animate(const Device& device, const Plan& plan, const SceneLayout& layout) {
@@ -19,11 +21,11 @@ void Animate::record(Recorder& recorder, const DeviceScene& scene, const Motion&
   if (motion.triangle_blocks == 0) return;
   recorder.stage("animate");
   if (motion.vertex_blocks > 0) {
-    recorder.bind(ROLE_WORK, scene.vertex_work());
-    recorder.dispatch(vertices_, motion.vertex_blocks, motion.vertex_blocks);
+    recorder.bind(ROLE_ANIMATE_BLOCKS, scene.vertex_work());
+    recorder.dispatch(vertices_, gpu::AnimatePush{motion.vertex_blocks}, motion.vertex_blocks);
   }
-  recorder.bind(ROLE_WORK, scene.triangle_work());
-  recorder.dispatch(triangles_, motion.triangle_blocks, motion.triangle_blocks);
+  recorder.bind(ROLE_ANIMATE_BLOCKS, scene.triangle_work());
+  recorder.dispatch(triangles_, gpu::AnimatePush{motion.triangle_blocks}, motion.triangle_blocks);
 }
 
 }  // namespace sheaf

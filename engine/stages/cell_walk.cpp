@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "interface/push/cells.h"
+#include "interface/push/trace.h"
+
 namespace sheaf {
 namespace {
 
@@ -56,32 +59,29 @@ glm::uvec2 CellWalk::frustums_at(std::uint32_t set) const {
 
 // One level from one half of the pairs' buffer into the other.
 void CellWalk::open(Recorder& recorder, std::uint32_t kind, const OpenStep& step) const {
-  const struct {
-    glm::uvec2 frustums;
-    std::uint32_t kind, half_read, room, level, ray_level, leaves;
-  } push{frustums_at(step.frustums), kind, step.half_read, pair_room_, step.level, step.ray_level,
-         step.leaves ? 1U : 0U};
+  const gpu::PairsOpenPush push{
+      frustums_at(step.frustums), kind, step.half_read, pair_room_, step.level, step.ray_level, step.leaves ? 1U : 0U};
   recorder.dispatch_indirect(open_, push, gpu::ARGS_PAIRS);
   recorder.bind(ROLE_BLOCK_SUMS, block_sums_);
-  compact_.record(recorder, {step.half_read, pair_room_, step.always ? 1U : 0U}, gpu::ARGS_PAIR_BLOCKS,
+  compact_.record(recorder, gpu::OpenScanPush{step.half_read, pair_room_, step.always ? 1U : 0U}, gpu::ARGS_PAIR_BLOCKS,
                   gpu::ARGS_PAIR_SCATTER);
   recorder.bind(ROLE_BLOCK_SUMS, context_.memory.block_sums);
 }
 
 void CellWalk::list_pairs(Recorder& recorder) const {
   recorder.fill(lists_, 0);
-  recorder.dispatch_indirect(ranges_, pair_room_, gpu::ARGS_PAIR_RANGES);
+  recorder.dispatch_indirect(ranges_, gpu::PairsRangesPush{pair_room_}, gpu::ARGS_PAIR_RANGES);
 }
 
 void CellWalk::intersect(Recorder& recorder, std::uint32_t kind, std::uint32_t level) const {
   recorder.stage("intersect");
   list_pairs(recorder);
-  const struct { std::uint32_t kind, room, level; } push{kind, pair_room_, level};
+  const gpu::IntersectPacketsPush push{kind, pair_room_, level};
   recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, push, gpu::ARGS_WALK_CELLS);
 }
 
 void CellWalk::trace_singly(Recorder& recorder, std::uint32_t kind, std::uint32_t first, std::uint32_t rays) const {
-  const struct { std::uint32_t kind, first, rays; } push{kind, first, rays};
+  const gpu::TraverseSinglePush push{kind, first, rays};
   recorder.stage("traverse");
   recorder.dispatch(kind == gpu::KIND_SHADOW ? single_.any : single_.nearest, push,
                     (rays + gpu::GROUP - 1) / gpu::GROUP);

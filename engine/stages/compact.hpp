@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device_data/ray_lists.hpp"
+#include "interface/push/push.h"
 #include "stages/scan.hpp"
 
 namespace sheaf {
@@ -13,13 +14,13 @@ class Compact {
   void record(Recorder& recorder, const RayList& list, std::uint32_t kind) const {
     recorder.stage("compact");
     list.bind(recorder);
-    scan_.record(recorder, {kind}, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS);
+    scan_.record(recorder, gpu::KindPush{kind}, kind == gpu::KIND_SHADOW ? gpu::ARGS_SLOTS_SHADOW : gpu::ARGS_SLOTS);
   }
   /// A list whose number of slots the host knows.
   void record_all(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t slots) const {
     recorder.stage("compact");
     list.bind(recorder);
-    scan_.record_blocks(recorder, {kind}, (slots + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
+    scan_.record_blocks(recorder, gpu::KindPush{kind}, (slots + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
   }
 
  private:

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/shade.h"
+
 namespace sheaf {
 
 Generate::Generate(const Device& device, const Plan& plan, const Features& features, const RenderSettings& settings)
@@ -37,24 +39,21 @@ void Generate::primary(Recorder& recorder, const RayMemory& memory, std::uint32_
     recorder.bind(ROLE_ACTIVE_PIXELS, memory.active_pixels);
     recorder.bind(ROLE_SAMPLE_PLACES, memory.sample_places);
   }
-  const std::uint32_t unused = 0;
-  recorder.dispatch(primary_, unused, (rays + gpu::GROUP - 1) / gpu::GROUP);
+  recorder.dispatch(primary_, gpu::NoPush{}, (rays + gpu::GROUP - 1) / gpu::GROUP);
 }
 
 void Generate::secondary(Recorder& recorder, const RayMemory& memory, const Parents& parents) const {
   recorder.stage("generate");
   const bool is_primary = parents.primary;
   const std::uint32_t from = parents.from, direct = parents.direct ? 1 : 0;
-  const struct { std::uint32_t primary, direct; } begin{is_primary ? 1U : 0U, direct};
+  const gpu::GenerateBeginPush begin{is_primary ? 1U : 0U, direct};
   recorder.dispatch(begin_, begin, 1);
   if (parents.direct) recorder.bind(ROLE_VISIBILITY, memory.visibility);
   const std::uint32_t to = 1 - from;
   recorder.bind_list(LIST_SHADOW_RAYS, memory.shadow.rays);
   if (plan_.reflections) recorder.bind_list(LIST_REFLECTION_RAYS, memory.reflection[is_primary ? 0 : to].rays);
   if (plan_.refractions) recorder.bind_list(LIST_REFRACTION_RAYS, memory.refraction[is_primary ? 0 : to].rays);
-  struct {
-    std::uint32_t kind, direct, sums;
-  } push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, direct, parents.sums};
+  gpu::GeneratePush push{is_primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, direct, parents.sums};
   if (is_primary || plan_.reflections) {
     memory.reflection[is_primary ? 1 : from].bind(recorder);
     recorder.dispatch_indirect(generate_, push, gpu::ARGS_PARENTS);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "interface/push/trace.h"
+
 namespace sheaf {
 
 IntersectBrute::IntersectBrute(const TraceContext& c) : triangles_(c.scene.triangles()) {
@@ -20,7 +22,7 @@ void IntersectBrute::trace(Recorder& recorder, const RayList& list, std::uint32_
   std::uint32_t first = 0;
   do {
     const std::uint32_t last = std::min(first + slice, triangles_);
-    const struct { std::uint32_t kind, first, last; } push{kind, first, last};
+    const gpu::IntersectBrutePush push{kind, first, last};
     recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, push, gpu::ARGS_RAYS);
     first = last;
   } while (first < triangles_);

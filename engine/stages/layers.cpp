@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "interface/push/push.h"
+
 namespace sheaf {
 
 Layers::Layers(const Device& device, const Plan& plan, const Features& features) {
@@ -18,8 +20,7 @@ void Layers::record(Recorder& recorder, const RayMemory& memory, std::uint32_t p
   recorder.stage("generate");
   memory.reflection[1].bind(recorder);
   recorder.bind(ROLE_LAYERS, memory.layers);
-  const std::uint32_t unused = 0;
-  recorder.dispatch(layers_, unused, (pixels + gpu::GROUP - 1) / gpu::GROUP);
+  recorder.dispatch(layers_, gpu::NoPush{}, (pixels + gpu::GROUP - 1) / gpu::GROUP);
   recorder.copy(memory.layers, memory.layers_readback, std::uint64_t{pixels} * gpu::LAYER_WORDS * 4);
 }
 

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/objects.h"
+
 namespace sheaf {
 
 Objects::Objects(const Device& device, const Plan& plan) {
@@ -13,9 +15,9 @@ Objects::Objects(const Device& device, const Plan& plan) {
 void Objects::record(Recorder& recorder, const DeviceScene& scene, const Motion& motion) const {
   if (motion.refit.empty()) return;
   recorder.stage("objects");
-  recorder.bind(ROLE_WORK, scene.refit_work());
+  recorder.bind(ROLE_REFIT_NODES, scene.refit_work());
   for (const auto& [first, count] : motion.refit) {
-    const struct { std::uint32_t first, count; } push{first, count};
+    const gpu::RefitPush push{first, count};
     recorder.dispatch(refit_, push, (std::uint64_t{count} + gpu::GROUP - 1) / gpu::GROUP);
   }
 }

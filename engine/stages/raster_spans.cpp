@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "interface/push/raster.h"
+
 namespace sheaf {
 
 RasterSpans::RasterSpans(const Device& device, const Plan& plan, const Features& features) {
@@ -25,10 +27,7 @@ bool RasterSpans::pays(const Device& device) {
 void RasterSpans::record(Recorder& recorder, const Buffer& visibility, std::uint32_t triangles) const {
   constexpr std::uint32_t enough_groups = 64;  // for some cores to share evenly
   const std::uint32_t blocks = (triangles + gpu::GROUP - 1) / gpu::GROUP, bands = (enough_groups + blocks - 1) / blocks;
-  const struct {
-    glm::uvec2 shown;
-    std::uint32_t bands;
-  } push{visibility.address_words(), bands};
+  const gpu::RasterSpansPush push{visibility.address_words(), bands};
   recorder.dispatch(kernel_, push, std::uint64_t{blocks} * bands);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "stages/rays_hierarchy.hpp"
 
+#include "interface/push/trace.h"
+
 namespace sheaf {
 
 std::vector<HierarchyLevel> hierarchy_levels(std::uint32_t rays) {
@@ -19,9 +21,7 @@ void RaysHierarchy::record(Recorder& recorder, const RayMemory& memory, std::uin
   recorder.stage("rays_hierarchy");
   recorder.bind(ROLE_RAY_NODES, memory.ray_nodes);
   for (std::uint32_t l = 1; l < levels.size(); ++l) {
-    const struct {
-      std::uint32_t kind, level, first, first_below;
-    } push{kind, l, levels[l].first_word, levels[l - 1].first_word};
+    const gpu::RaysHierarchyPush push{kind, l, levels[l].first_word, levels[l - 1].first_word};
     recorder.dispatch(level_, push, (levels[l].nodes + gpu::GROUP - 1) / gpu::GROUP);
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device_data/ray_lists.hpp"
+#include "interface/push/shade.h"
 #include "vulkan/kernel.hpp"
 
 namespace sheaf {
@@ -12,10 +13,8 @@ class Resolve {
   explicit Resolve(const Device& device) : resolve_(device, "resolve") {}
   void record(Recorder& recorder, const RayMemory& memory, std::uint32_t pixels, std::uint32_t samples) const {
     recorder.stage("resolve");
-    const struct {
-      std::uint64_t output;
-      float inverse_samples;
-    } push{(memory.output ? memory.output : memory.readback).address(), 1.0F / static_cast<float>(samples)};
+    const gpu::ResolvePush push{(memory.output ? memory.output : memory.readback).address_words(),
+                                1.0F / static_cast<float>(samples)};
     recorder.dispatch(resolve_, push, (std::uint64_t{pixels} + gpu::GROUP - 1) / gpu::GROUP);
     if (memory.output) recorder.copy(memory.output, memory.readback, std::uint64_t{pixels} * 16);
   }

@@ -10,11 +10,6 @@
 
 namespace sheaf {
 
-struct ScanPush {
-  std::uint32_t kind = 0;
-  std::uint32_t second = 0, third = 0;  // of the walks' elements alone (cell_elements.glsl), which name all three
-};
-
 class Scan {
  public:
   Scan() = default;
@@ -28,20 +23,23 @@ class Scan {
 
   /// `args`: the ARGS_… record with one workgroup per block. The spine always runs: it publishes the total, also of
   /// nothing.
-  void record(Recorder& recorder, const ScanPush& push, std::uint32_t args) const {
+  template <typename Push>
+  void record(Recorder& recorder, const Push& push, std::uint32_t args) const {
     recorder.dispatch_indirect(reduce_, push, args);
     recorder.dispatch(spine_, push, 1);
     recorder.dispatch_indirect(scatter_, push, args);
   }
 
   /// `scatter_args`: where the spine decides whether there is room to scatter into.
-  void record(Recorder& recorder, const ScanPush& push, std::uint32_t args, std::uint32_t scatter_args) const {
+  template <typename Push>
+  void record(Recorder& recorder, const Push& push, std::uint32_t args, std::uint32_t scatter_args) const {
     recorder.dispatch_indirect(reduce_, push, args);
     recorder.dispatch(spine_, push, 1);
     recorder.dispatch_indirect(scatter_, push, scatter_args);
   }
 
-  void record_blocks(Recorder& recorder, const ScanPush& push, std::uint64_t blocks) const {
+  template <typename Push>
+  void record_blocks(Recorder& recorder, const Push& push, std::uint64_t blocks) const {
     recorder.dispatch(reduce_, push, blocks);
     recorder.dispatch(spine_, push, 1);
     recorder.dispatch(scatter_, push, blocks);

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/shade.h"
+
 namespace sheaf {
 
 // By turns on llvmpipe: parent by parent two lights' rays take 0.74 to 0.83 of the time, one light's 1.1.
@@ -16,9 +18,7 @@ Shade::Shade(const Device& device, const Plan& plan, const Features& features, s
 void Shade::record(Recorder& recorder, const RayMemory& memory, const ShadowParents& parents) const {
   recorder.stage("shade");
   memory.shadow.bind(recorder);
-  struct {
-    std::uint32_t kind, sums;
-  } push{parents.primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, gpu::SUMS_SHARED};
+  gpu::ShadePush push{parents.primary ? gpu::KIND_PRIMARY : gpu::KIND_REFLECTION, gpu::SUMS_SHARED};
   if (!by_parent_) {
     if (parents.both_one_per_pixel) push.sums = gpu::SUMS_OWN;
     recorder.dispatch_indirect(shade_, push, gpu::ARGS_RAYS);

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <bit>
 
+#include "interface/push/lists.h"
+
 namespace sheaf {
 
 void record_bounds(Recorder& recorder, const Kernel& kernel, std::uint32_t kind, std::uint32_t args) {
-  struct {
-    std::uint32_t kind, reset;
-  } push{kind, 1};
+  gpu::BoundsPush push{kind, 1};
   recorder.dispatch(kernel, push, 1);
   push.reset = 0;
   recorder.dispatch_indirect(kernel, push, args);
@@ -51,9 +51,10 @@ bool SortRays::record_passes(Recorder& recorder, const RayMemory& memory, std::u
   for (std::uint32_t shift = 0; shift < key_bits; shift += gpu::RADIX_BITS, in_alt = !in_alt) {
     recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
     recorder.bind(ROLE_CHUNKS_ALT, in_alt ? memory.chunks : memory.chunks_alt);
-    recorder.dispatch_indirect(count_, shift, gpu::ARGS_CHUNKS);
-    recorder.dispatch_indirect(spine_, shift, gpu::ARGS_ONE);
-    recorder.dispatch_indirect(scatter_, shift, gpu::ARGS_CHUNKS);
+    const gpu::SortPush push{shift};
+    recorder.dispatch_indirect(count_, push, gpu::ARGS_CHUNKS);
+    recorder.dispatch_indirect(spine_, push, gpu::ARGS_ONE);
+    recorder.dispatch_indirect(scatter_, push, gpu::ARGS_CHUNKS);
   }
   recorder.bind(ROLE_CHUNKS, in_alt ? memory.chunks_alt : memory.chunks);
   recorder.bind(ROLE_BLOCK_SUMS, memory.block_sums);
@@ -64,7 +65,7 @@ void SortRays::record_keys(Recorder& recorder, const TraceContext& context, std:
   const KeyLayout layout = key_layout(kind, context.scene.lights(), context.memory.tile_pixels);
   recorder.stage("hash");
   recorder.bind(ROLE_KEYS, context.memory.keys);
-  const struct { std::uint32_t kind, bits, light_bits; } key{kind, layout.coordinate_bits, layout.light_bits};
+  const gpu::HashPush key{kind, layout.coordinate_bits, layout.light_bits};
   recorder.dispatch_indirect(hash_, key, gpu::ARGS_RAYS);
 }
 
@@ -82,20 +83,19 @@ void SortRays::record_order(Recorder& recorder, const TraceContext& context, std
   recorder.bind(ROLE_KEYS, memory.keys);
   recorder.bind(ROLE_CHUNKS, memory.chunks);
   recorder.bind(ROLE_SKELETON, memory.skeleton);
-  recorder.bind(ROLE_SCAN_OUT, memory.order_kept);
+  recorder.bind(ROLE_ORDER_KEPT, memory.order_kept);
   recorder.stage("compress");
-  const ScanPush scan{kind};
-  compress_.record(recorder, scan, gpu::ARGS_BLOCKS);
-  recorder.dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
+  const gpu::KindPush push{kind};
+  compress_.record(recorder, push, gpu::ARGS_BLOCKS);
+  recorder.dispatch_indirect(sizes_, push, gpu::ARGS_CHUNKS);
 
   recorder.stage("sort");
   (void)record_passes(recorder, memory, key_bits);
 
   recorder.stage("decompress");
-  recorder.dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);
-  starts_.record(recorder, scan, gpu::ARGS_CHUNKS);
-  segmented_.record(recorder, scan, gpu::ARGS_BLOCKS);
-  context.scene.bind(recorder);  // SCAN_OUT was lent to the kept order
+  recorder.dispatch_indirect(fill_, push, gpu::ARGS_BLOCKS);
+  starts_.record(recorder, push, gpu::ARGS_CHUNKS);
+  segmented_.record(recorder, push, gpu::ARGS_BLOCKS);
 }
 
 }  // namespace sheaf

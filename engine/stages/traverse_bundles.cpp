@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/trace.h"
+
 namespace sheaf {
 namespace {
 
@@ -35,14 +37,12 @@ void TraverseBundles::trace(Recorder& recorder, const RayList& list, std::uint32
   if (context_.plan.sorts && kind != gpu::KIND_PRIMARY) sort_.record(recorder, context_, kind);
 
   recorder.stage("traverse");
-  recorder.bind(ROLE_WORK, incoherent_bundles_);
+  recorder.bind(ROLE_INCOHERENT_BUNDLES, incoherent_bundles_);
   const bool shadow = kind == gpu::KIND_SHADOW;
-  const struct {
-    std::uint32_t kind, most_effort;
-    float widest;
-  } walk{kind, most_effort, shadow ? widest_shadow : widest};
+  const gpu::TraverseBundlesPush walk{kind, most_effort, shadow ? widest_shadow : widest};
   recorder.dispatch_indirect(shadow ? any_ : nearest_, walk, gpu::ARGS_BUNDLES);
-  recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, kind, gpu::ARGS_INCOHERENT);
+  recorder.dispatch_indirect(shadow ? single_.any : single_.nearest, gpu::TraverseSinglePush{kind, 0, 0},
+                             gpu::ARGS_INCOHERENT);
 }
 
 }  // namespace sheaf

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "interface/push/cells.h"
+
 namespace sheaf {
 namespace {
 
@@ -47,16 +49,14 @@ void TraverseClasses::sort(Recorder& recorder, std::uint32_t kind) {
   recorder.bind(ROLE_KEYS, context_.memory.keys);
   recorder.stage("hash");
   record_bounds(recorder, bounds_, kind, gpu::ARGS_RAYS);
-  struct {
-    std::uint32_t kind, sorted;
-  } keys{kind, 0};
+  gpu::ClassifyKeysPush keys{kind, 0};
   recorder.dispatch_indirect(keys_, keys, gpu::ARGS_RAYS);
   sort_.record_order(recorder, context_, kind, key_bits);
   recorder.stage("hash");
   keys.sorted = 1;
   recorder.dispatch_indirect(keys_, keys, gpu::ARGS_RAYS);
   recorder.bind(ROLE_CELL_CUTS, context_.memory.skeleton);  // that the sort is done with
-  recorder.dispatch_indirect(cuts_, kind, gpu::ARGS_RAYS);
+  recorder.dispatch_indirect(cuts_, gpu::KindPush{kind}, gpu::ARGS_RAYS);
 }
 
 // Five halvings: the cells of the next `round`, and their frustums.
@@ -64,18 +64,18 @@ void TraverseClasses::divide(Recorder& recorder, std::uint32_t round) {
   const std::uint32_t first = round == 1 ? 1 : 0;
   recorder.bind(ROLE_CELLS, cells_);
   recorder.bind(ROLE_CELLS_NEXT, cells_next_);
-  divide_.record(recorder, {halvings * round, first, walk_.cell_room()}, gpu::ARGS_WALK_BLOCKS, gpu::ARGS_WALK_SCATTER);
-  const struct {
-    glm::uvec2 frustums, above;
-  } push{walk_.frustums_at(round % 2), first != 0 ? glm::uvec2(0) : walk_.frustums_at((round + 1) % 2)};
+  divide_.record(recorder, gpu::DivideScanPush{halvings * round, first, walk_.cell_room()}, gpu::ARGS_WALK_BLOCKS,
+                 gpu::ARGS_WALK_SCATTER);
+  const gpu::ClassifyFrustumsPush push{walk_.frustums_at(round % 2),
+                                       first != 0 ? glm::uvec2(0) : walk_.frustums_at((round + 1) % 2)};
   recorder.dispatch_indirect(frustums_, push, gpu::ARGS_WALK_CELLS);
 }
 
 void TraverseClasses::make_candidates(Recorder& recorder, bool root, Progress& progress) {
   const std::uint32_t from_root = root ? 1 : 0, room = walk_.pair_room();
-  offsets_.record(recorder, {progress.half, room, from_root}, gpu::ARGS_CELL_BLOCKS);
+  offsets_.record(recorder, gpu::CandidatesScanPush{progress.half, room, from_root}, gpu::ARGS_CELL_BLOCKS);
   progress.half = 1 - progress.half;
-  const struct { std::uint32_t room, root; } push{room, from_root};
+  const gpu::ClassifyCandidatesPush push{room, from_root};
   recorder.dispatch_indirect(candidates_, push, gpu::ARGS_WALK_CELLS);
   std::swap(cells_, cells_next_);
   recorder.bind(ROLE_CELLS, cells_);
@@ -92,7 +92,7 @@ void TraverseClasses::open(Recorder& recorder, std::uint32_t kind, OpenStep step
 void TraverseClasses::record_walk(Recorder& recorder, std::uint32_t kind, WalkRange rays) {
   Progress progress;
   recorder.bind(ROLE_CELLS, cells_);
-  const struct { std::uint32_t kind, first, most; } begin{kind, rays.first, rays.most};
+  const gpu::ClassifyBeginPush begin{kind, rays.first, rays.most};
   recorder.dispatch(begin_, begin, 1);
   for (std::uint32_t round = 1; round <= rounds; ++round) {
     recorder.stage("rays_hierarchy");
@@ -104,13 +104,13 @@ void TraverseClasses::record_walk(Recorder& recorder, std::uint32_t kind, WalkRa
       open(recorder, kind, {.ray_level = finest_level + rounds - round, .leaves = k == 0, .always = true}, progress);
     if (round == rounds) break;
     walk_.list_pairs(recorder);
-    const struct { std::uint32_t room, many; } stop{walk_.pair_room(), many_a_level * progress.opened};
+    const gpu::ClassifyStopsPush stop{walk_.pair_room(), many_a_level * progress.opened};
     recorder.dispatch_indirect(stops_, stop, gpu::ARGS_WALK_RUNS);
   }
   while (progress.opened < context_.scene.hierarchy_levels())
     open(recorder, kind, {.ray_level = finest_level}, progress);
   recorder.stage("rays_hierarchy");
-  packets_.record(recorder, {}, gpu::ARGS_WALK_BLOCKS);
+  packets_.record(recorder, gpu::NoPush{}, gpu::ARGS_WALK_BLOCKS);
   walk_.intersect(recorder, kind, progress.opened);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "interface/push/cells.h"
+
 namespace sheaf {
 namespace {
 
@@ -33,15 +35,15 @@ void TraverseFrustums::cut_packets(Recorder& recorder, std::uint32_t kind, bool 
   recorder.bind(ROLE_PACKETS, walk_.packets());
   const std::uint64_t rays = context_.memory.tile_pixels;
   const std::uint32_t bits = key_layout(kind, context_.scene.lights(), rays).bits();
-  const struct { std::uint32_t kind, dropped; } push{kind, sorted ? bits - std::min(bits, shared_bits(rays)) : 32};
+  const gpu::PacketsKeysPush push{kind, sorted ? bits - std::min(bits, shared_bits(rays)) : 32};
   recorder.dispatch_indirect(keys_kernel_, push, gpu::ARGS_RAYS);
-  packets_.record(recorder, {kind}, gpu::ARGS_BLOCKS);
+  packets_.record(recorder, gpu::KindPush{kind}, gpu::ARGS_BLOCKS);
 }
 
 void TraverseFrustums::record_walk(Recorder& recorder, std::uint32_t kind, WalkRange packets) {
-  const struct { std::uint32_t first, most, room; } begin{packets.first, packets.most, walk_.cell_room()};
+  const gpu::WalkBeginPush begin{packets.first, packets.most, walk_.cell_room()};
   recorder.dispatch(begin_, begin, 1);
-  recorder.dispatch_indirect(frustums_, walk_.frustums_at(), gpu::ARGS_WALK_RUNS);
+  recorder.dispatch_indirect(frustums_, gpu::PacketsFrustumsPush{walk_.frustums_at()}, gpu::ARGS_WALK_RUNS);
   recorder.stage("traverse");  // with its compaction: a stage a level would cost more than what it tells
   const std::uint32_t levels = context_.scene.hierarchy_levels();
   for (std::uint32_t level = 0; level < levels; ++level)

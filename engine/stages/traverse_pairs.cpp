@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "interface/push/objects.h"
+#include "interface/push/trace.h"
+
 namespace sheaf {
 namespace {
 
@@ -73,7 +76,7 @@ void TraversePairs::record_spheres(Recorder& recorder, const Runs& runs) const {
   recorder.bind(ROLE_SPHERES, runs.spheres);
   recorder.bind(ROLE_RUNS, runs.table);
   const auto count = static_cast<std::uint32_t>(runs.all.size());
-  if (count != 0) recorder.dispatch(spheres_, count, groups(count));
+  if (count != 0) recorder.dispatch(spheres_, gpu::SpheresPush{count}, groups(count));
 }
 
 void TraversePairs::objects_moved(Recorder& recorder, const Motion& motion) {
@@ -81,7 +84,7 @@ void TraversePairs::objects_moved(Recorder& recorder, const Motion& motion) {
   recorder.stage("objects");
   recorder.bind(ROLE_SPHERES, triangle_spheres_);
   recorder.bind(ROLE_RUNS, parts_.table);
-  recorder.dispatch(spheres_, 0U, groups(context_.scene.triangles()));
+  recorder.dispatch(spheres_, gpu::SpheresPush{0}, groups(context_.scene.triangles()));
   record_spheres(recorder, meshes_);
   record_spheres(recorder, parts_);
 }
@@ -106,14 +109,13 @@ void TraversePairs::test(Recorder& recorder, const Walk& walk, std::size_t step,
   recorder.stage("traverse");
   recorder.bind(ROLE_PAIRS, candidates_);
   recorder.bind(ROLE_SURVIVORS, flags_);
-  recorder.bind(ROLE_SKELETON, seeds_);
+  recorder.bind(ROLE_SEEDS, seeds_);
   recorder.bind(ROLE_SPHERES, *spheres);
   recorder.bind(ROLE_RUNS, parts_.table);
   if (seeds == 0) recorder.bind(ROLE_PAIRS_NEXT, survivors_[step - 1]);
-  const struct {
-    std::uint32_t kind, level, first_word, nodes, candidates, offset, seeds, opens_parts;
-  } push{walk.kind, level, walk.levels[level].first_word, walk.levels[level].nodes, candidates,
-         offset,    seeds, opens_parts ? 1U : 0U};
+  const gpu::TraversePairsPush push{
+      walk.kind, level, walk.levels[level].first_word, walk.levels[level].nodes, candidates,
+      offset,    seeds, opens_parts ? 1U : 0U};
   recorder.dispatch(test_, push, groups(candidates));
   pairs_[level] += candidates;
 
@@ -121,7 +123,7 @@ void TraversePairs::test(Recorder& recorder, const Walk& walk, std::size_t step,
   recorder.bind(ROLE_PAIRS_NEXT, survivors_[step]);
   recorder.bind(ROLE_BLOCK_SUMS, block_sums_);
   recorder.fill(context_.memory.counters, candidates, gpu::COUNT_PAIRS * 4, 4);
-  compact_.record_blocks(recorder, {walk.kind}, (candidates + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
+  compact_.record_blocks(recorder, gpu::KindPush{walk.kind}, (candidates + gpu::SCAN_BLOCK - 1) / gpu::SCAN_BLOCK);
   recorder.bind(ROLE_BLOCK_SUMS, context_.memory.block_sums);
 }
 
@@ -139,7 +141,7 @@ void TraversePairs::descend(Recorder& recorder, const Walk& walk, std::size_t st
   } else {
     recorder.stage("intersect");
     recorder.bind(ROLE_PAIRS, survivors_[step]);
-    const struct { std::uint32_t kind, pairs, reset; } push{walk.kind, pairs, 0};
+    const gpu::IntersectPairsPush push{walk.kind, pairs, 0};
     recorder.dispatch(walk.kind == gpu::KIND_SHADOW ? any_ : nearest_, push, groups(pairs));
   }
 }
@@ -204,7 +206,7 @@ TraversePairs::Seeds TraversePairs::begin_at_meshes(Recorder& recorder, Walk& wa
 }
 
 void TraversePairs::reset_hits(Recorder& recorder, std::uint32_t kind) {
-  const struct { std::uint32_t kind, pairs, reset; } push{kind, 0, 1};
+  const gpu::IntersectPairsPush push{kind, 0, 1};
   recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, push, gpu::ARGS_RAYS);
 }
 

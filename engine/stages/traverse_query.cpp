@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "interface/push/push.h"
 
 namespace sheaf {
 namespace {
@@ -65,7 +66,7 @@ void TraverseQuery::objects_moved(Recorder& recorder, const Motion& motion) {
   const std::uint32_t triangles = context_.scene.triangles();
   recorder.stage("objects");
   recorder.bind(ROLE_BOXES, boxes_);
-  recorder.dispatch(boxes_kernel_, 0U, (triangles + gpu::GROUP - 1) / gpu::GROUP);
+  recorder.dispatch(boxes_kernel_, gpu::NoPush{}, (triangles + gpu::GROUP - 1) / gpu::GROUP);
   const vk::MemoryBarrier written(vk::AccessFlagBits::eShaderWrite,
                                   vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eAccelerationStructureReadKHR);
   recorder.commands().pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
@@ -97,7 +98,7 @@ void TraverseQuery::trace(Recorder& recorder, const RayList& list, std::uint32_t
     return;
   }
   list.bind(recorder);
-  recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, kind, gpu::ARGS_RAYS);
+  recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? any_ : nearest_, gpu::KindPush{kind}, gpu::ARGS_RAYS);
 }
 
 }  // namespace sheaf

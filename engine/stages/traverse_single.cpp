@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "interface/push/trace.h"
+
 namespace sheaf {
 
 SingleKernels::SingleKernels(const TraceContext& c, bool incoherent) {
@@ -21,7 +23,8 @@ SingleKernels::SingleKernels(const TraceContext& c, bool incoherent) {
 void TraverseSingle::trace(Recorder& recorder, const RayList& list, std::uint32_t kind, std::uint32_t) {
   recorder.stage("traverse");
   list.bind(recorder);
-  recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? kernels_.any : kernels_.nearest, kind, gpu::ARGS_RAYS);
+  recorder.dispatch_indirect(kind == gpu::KIND_SHADOW ? kernels_.any : kernels_.nearest,
+                             gpu::TraverseSinglePush{kind, 0, 0}, gpu::ARGS_RAYS);
 }
 
 }  // namespace sheaf

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "interface/push/push.h"
 #include "interface/shared.h"
 #include "vulkan/buffer.hpp"
 #include "vulkan/kernel.hpp"
@@ -33,13 +34,13 @@ class Recorder {
   /// `groups` workgroups; more than the device's limit in x are folded into y.
   template <typename Push>
   void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups) {
-    static_assert(sizeof(Push) <= PUSH_LISTS);
+    static_assert(gpu::is_push<Push>, "declared in shaders/interface/push");
     dispatch_bytes(kernel, &push, sizeof(Push), groups);
   }
   /// Workgroups from record `args` (one of ARGS_…) of the buffer bound to ROLE_ARGS.
   template <typename Push>
   void dispatch_indirect(const Kernel& kernel, const Push& push, std::uint32_t args) {
-    static_assert(sizeof(Push) <= PUSH_LISTS);
+    static_assert(gpu::is_push<Push>, "declared in shaders/interface/push");
     indirect_bytes(kernel, &push, sizeof(Push), args);
   }
 

@@ -5,6 +5,8 @@
 // GROUP triangles of one instance.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/animate.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/memory.glsl"
 #include "animate/skin.glsl"
@@ -15,8 +17,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Tr
 BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_MATERIALS, readonly, Material, materials);
 BUFFER(ROLE_DEFORM, readonly, Deform, deforms);
-BUFFER(ROLE_WORK, readonly, uvec2, work);  // (instance, first triangle within it)
-layout(push_constant) uniform Push { uint blocks; } push;
+BUFFER(ROLE_ANIMATE_BLOCKS, readonly, uvec2, work);  // (instance, first triangle within it)
+PUSH(AnimatePush);
 
 float size_of(Rows m) { return max_of(max(max(abs(m.r0.xyz), abs(m.r1.xyz)), abs(m.r2.xyz))); }
 

@@ -6,6 +6,8 @@
 // (skins). A workgroup takes one block of up to GROUP vertices of one instance.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/animate.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/memory.glsl"
 #include "lib/unit.glsl"
@@ -19,9 +21,9 @@ BUFFER(ROLE_INSTANCES, readonly, Instance, instances);
 BUFFER(ROLE_DYNAMIC, writeonly, vec3, dynamic_vertices);
 BUFFER(ROLE_DEFORM, readonly, Deform, deforms);
 BUFFER(ROLE_MORPHS, readonly, vec3, morphs);
-BUFFER(ROLE_SCAN_OUT, readonly, float, morph_weights);
-BUFFER(ROLE_WORK, readonly, uvec2, work);  // (deforming instance, first vertex)
-layout(push_constant) uniform Push { uint blocks; } push;
+BUFFER(ROLE_MORPH_WEIGHTS, readonly, float, morph_weights);
+BUFFER(ROLE_ANIMATE_BLOCKS, readonly, uvec2, work);  // (deforming instance, first vertex)
+PUSH(AnimatePush);
 
 vec3 morphed(vec3 base, Deform d, uint first, uint v) {
   if (first == NO_INDEX) return base;

@@ -2,8 +2,10 @@
 // The matrix of a skinned vertex (glTF 2.0, 3.7.3.3), relative to the frame origin.
 #ifndef SHEAF_SKIN_GLSL
 #define SHEAF_SKIN_GLSL
+#include "lib/common.glsl"
+#include "interface/deform.h"
 BUFFER(ROLE_JOINTS, readonly, uint, joints);
-BUFFER(ROLE_SCAN_IN, readonly, vec4, joint_rows);  // three rows a matrix
+BUFFER(ROLE_JOINT_MATRICES, readonly, vec4, joint_rows);  // three rows a matrix
 
 struct Rows {
   vec4 r0, r1, r2;

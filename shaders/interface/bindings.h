@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What GLSL and C++ call the constants, buffers and lists that a kernel is given. Part of shared.h.
+// What GLSL and C++ call the constants, buffers and lists that a kernel is given.
 #ifndef SHEAF_BINDINGS_H
 #define SHEAF_BINDINGS_H
 
@@ -37,6 +37,10 @@
 #define ROLE_FRAME 0
 #define ROLE_COUNTERS 1
 #define ROLE_ARGS 2
+#define ROLE_JOINT_MATRICES 3
+#define ROLE_MORPH_WEIGHTS 4
+#define ROLE_ORDER_KEPT 5
+#define ROLE_SEEDS 6
 #define ROLE_INSTANCES 7
 #define ROLE_MATERIALS 14
 #define ROLE_LIGHTS 17
@@ -55,13 +59,15 @@
 #define ROLE_VISIBILITY 38
 #define ROLE_LAYERS 39
 #define ROLE_PIXEL_TESTS 40
-#define ROLE_WORK 42
+#define ROLE_ANIMATE_BLOCKS 41
+#define ROLE_REFIT_NODES 42
 #define ROLE_DYNAMIC 43
 #define ROLE_DEFORM 44
 #define ROLE_JOINTS 45
 #define ROLE_MORPHS 46
-#define ROLE_SCAN_IN 47
+#define ROLE_SCAN_IN 47   // of the scan of plain numbers
 #define ROLE_SCAN_OUT 48
+#define ROLE_INCOHERENT_BUNDLES 49
 #define ROLE_STATS 50
 #define ROLE_BOXES 51
 #define ROLE_STRUCTURE 52  // the one role that is an acceleration structure

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #ifndef SHEAF_ARGS_GLSL
 #define SHEAF_ARGS_GLSL
+#include "lib/common.glsl"
+#include "lib/counters.glsl"
 layout(constant_id = SPEC_BUNDLE) const uint BUNDLE_RAYS = BUNDLE;  // of `hybrid`
 
 // Indirect dispatch arguments. Workgroups past a row are folded into y (see global_group).

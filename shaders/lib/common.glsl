@@ -5,10 +5,15 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_control_flow_attributes : require
 #ifdef COMPUTE
 #extension GL_KHR_shader_subgroup_basic : require
 #endif
-#include "interface/shared.h"
+#include "interface/bindings.h"
+#include "interface/dispatch.h"
+#include "interface/types.h"
 
 #define BUFFER(role, access, type, name) \
   layout(scalar, set = 0, binding = role) access buffer Block_##name { type name[]; }

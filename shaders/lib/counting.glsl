@@ -3,6 +3,8 @@
 // nothing.
 #ifndef SHEAF_COUNTING_GLSL
 #define SHEAF_COUNTING_GLSL
+#include "lib/common.glsl"
+#include "interface/counters.h"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 layout(constant_id = SPEC_COUNTED) const bool COUNTED = false;
 layout(constant_id = SPEC_PIXEL_COUNTED) const bool PIXEL_COUNTED = false;

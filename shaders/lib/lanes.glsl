@@ -5,9 +5,12 @@
 // values in turn.
 #ifndef SHEAF_LANES_GLSL
 #define SHEAF_LANES_GLSL
+#include "lib/common.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+
+layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup
 
 const bool PERMUTED = LANES <= 8u, IN_TURN = LANES == 16u && WORKERS > 0u;
 
@@ -70,14 +73,4 @@ uint lanes_where(bool b, uint count) {
 uint lanes_where(bool b) { return lanes_where(b, LANES); }
 bool any_lane(bool b) { return has_ballot() ? subgroupBallot(b) != uvec4(0) : or_lanes(b ? 1u : 0u) != 0u; }
 uint lanes_that(bool b) { return has_ballot() ? subgroupBallotBitCount(subgroupBallot(b)) : bitCount(lanes_where(b)); }
-
-// Arrays of a value a vector of rays: an element is picked by comparing with every index, which costs a CPU device a
-// third of what a gather does. V is the same in all lanes.
-#define PICK(result, array, v) \
-  { \
-    result = array[0]; \
-    [[unroll]] for (uint pick_ = 1u; pick_ < VECTORS; ++pick_) result = (v) == pick_ ? array[pick_] : result; \
-  }
-#define PUT(array, v, value) \
-  [[unroll]] for (uint put_ = 0u; put_ < VECTORS; ++put_) array[put_] = (v) == put_ ? value : array[put_]
 #endif

@@ -4,9 +4,11 @@
 // Sizes of the chunks: to the next chunk's base, or to the end.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_CHUNKS, coherent, uvec3, chunks);  // key, base, size
-layout(push_constant) uniform Push { uint kind; } push;
+PUSH(KindPush);
 
 void main() {
   uint count = counters[COUNT_CHUNKS];

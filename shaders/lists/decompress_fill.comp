@@ -4,9 +4,11 @@
 // The skeleton of ones that chunk bases are then set into (R 4.2, Decompression).
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_SKELETON, writeonly, uint, skeleton);
-layout(push_constant) uniform Push { uint kind; } push;
+PUSH(KindPush);
 
 void main() {
   uint count = counters[COUNT_RAYS + push.kind];

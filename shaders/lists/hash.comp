@@ -6,17 +6,15 @@
 // across it (directional). All along Hilbert curves.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/scene.h"
+#include "interface/push/lists.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/curves.glsl"
 BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_LIGHTS, readonly, Light, lights);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint bits;        // a coordinate
-  uint light_bits;
-  PUSH_LIST
-} push;
+PUSH(HashPush);
 
 vec3 batch_place(vec3 o) {  // in [0, 1]³; a batch without extent along an axis has one cell there
   vec3 lo, hi;
@@ -56,7 +54,7 @@ uint secondary_key(Ray ray) {
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = load_slot(push.order, i);
-  Ray ray = load_ray(push.rays, slot);
-  keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, load_ray_medium(push.rays, slot)) : secondary_key(ray);
+  uint slot = load_slot(ray_list.order, i);
+  Ray ray = load_ray(ray_list.rays, slot);
+  keys[i] = push.kind == KIND_SHADOW ? shadow_key(ray, load_ray_medium(ray_list.rays, slot)) : secondary_key(ray);
 }

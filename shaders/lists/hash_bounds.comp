@@ -5,14 +5,13 @@
 // result.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/lists.h"
+#include "lib/push.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/curves.glsl"
-layout(push_constant) uniform Push {
-  uint kind; uint reset;
-  PUSH_LIST
-} push;
+PUSH(BoundsPush);
 
 void main() {
   if (push.reset != 0u) {
@@ -23,7 +22,7 @@ void main() {
   uint block = global_group() * SCAN_BLOCK + local_index() * SCAN_RUN;
   vec3 lo = vec3(INFINITY), hi = vec3(-INFINITY);
   for (uint i = block; i < min(block + SCAN_RUN, count); ++i) {
-    vec3 o = load_ray(push.rays, load_slot(push.order, i)).origin;
+    vec3 o = load_ray(ray_list.rays, load_slot(ray_list.order, i)).origin;
     lo = min(lo, o);
     hi = max(hi, o);
   }

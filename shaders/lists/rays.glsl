@@ -5,21 +5,15 @@
 // compaction asks for nothing else.
 #ifndef SHEAF_RAYS_GLSL
 #define SHEAF_RAYS_GLSL
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_buffer_reference_uvec2 : require
-layout(scalar, set = 0, binding = ROLE_FRAME) readonly buffer Block_frame { Frame frame; };
+#include "interface/rays.h"
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer RayPairs { uint64_t pair[RAY_PART / 2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayPixel { uint v; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListSlot { uint v; };
 // Low word: triangle; high: t.
 layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer ListHit { uint64_t v; };
-
-// In push constants: what Recorder::bind_list was given last.
-#define PUSH_LIST                          \
-  layout(offset = PUSH_LISTS) uvec2 order; \
-  uvec2 hits;                              \
-  uvec2 rays;
 
 uint load_slot(uvec2 order, uint i) { return ListSlot(pack64(order) + uint64_t(4u * i)).v; }
 void store_slot(uvec2 order, uint i, uint slot) { ListSlot(pack64(order) + uint64_t(4u * i)).v = slot; }

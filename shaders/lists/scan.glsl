@@ -8,6 +8,9 @@
 // the value, so values stay below 2^31.
 #ifndef SHEAF_SCAN_GLSL
 #define SHEAF_SCAN_GLSL
+#include "interface/bindings.h"
+#include "interface/dispatch.h"
+#include "lib/common.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 BUFFER(ROLE_BLOCK_SUMS, coherent, uint, block_sums);
 shared uint scan_shared[SCAN_GROUP];

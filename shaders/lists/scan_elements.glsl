@@ -2,24 +2,24 @@
 // What is scanned, and what becomes of the result: one of the SCAN_… names, defined by the build's table of variants.
 #ifndef SHEAF_SCAN_ELEMENTS_GLSL
 #define SHEAF_SCAN_ELEMENTS_GLSL
+#include "lib/common.glsl"
 #if defined(SCAN_CELLS)
 #include "trace/cells/cell_elements.glsl"
 #else
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/args.glsl"
-layout(push_constant) uniform Push {
-  uint kind;
-  PUSH_LIST
-} push;
+PUSH(KindPush);
 
 #if defined(SCAN_COMPACT)
 // Slots that hold a ray → their list, in slot order.
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
 uint scan_count() { return counters[COUNT_SLOTS + push.kind]; }
-uint scan_load(uint i) { return load_ray_pixel(push.rays, i) != NO_INDEX ? 1u : 0u; }
+uint scan_load(uint i) { return load_ray_pixel(ray_list.rays, i) != NO_INDEX ? 1u : 0u; }
 void scan_store(uint i, uint before, uint own) {
-  if (own != 0u) store_slot(push.order, before, i);
+  if (own != 0u) store_slot(ray_list.order, before, i);
 }
 void scan_total(uint total) {
   counters[COUNT_RAYS + push.kind] = total;
@@ -30,11 +30,11 @@ void scan_total(uint total) {
 // Neighbours with equal keys → chunks (R 4.2, Compression). The order is kept aside for decompression.
 BUFFER(ROLE_KEYS, readonly, uint, keys);
 BUFFER(ROLE_CHUNKS, writeonly, uvec3, chunks);  // key, base, size
-BUFFER(ROLE_SCAN_OUT, writeonly, uint, order_kept);
+BUFFER(ROLE_ORDER_KEPT, writeonly, uint, order_kept);
 uint scan_count() { return counters[COUNT_RAYS + push.kind]; }
 uint scan_load(uint i) { return i == 0u || keys[i] != keys[i - 1u] ? 1u : 0u; }
 void scan_store(uint i, uint before, uint own) {
-  order_kept[i] = load_slot(push.order, i);
+  order_kept[i] = load_slot(ray_list.order, i);
   if (own != 0u) {
     chunks[before].x = keys[i];
     chunks[before].y = i;
@@ -56,11 +56,11 @@ void scan_total(uint total) {}
 // Inclusive segmented scan of the skeleton: heads hold a chunk's base, the rest 1, so each place gets its ray's old
 // place.
 BUFFER(ROLE_SKELETON, readonly, uint, skeleton);
-BUFFER(ROLE_SCAN_OUT, readonly, uint, order_kept);
+BUFFER(ROLE_ORDER_KEPT, readonly, uint, order_kept);
 uint scan_count() { return counters[COUNT_RAYS + push.kind]; }
 uint scan_load(uint i) { return skeleton[i]; }
 #define SCAN_INCLUSIVE
-void scan_store(uint i, uint upto, uint own) { store_slot(push.order, i, order_kept[upto & 0x7FFFFFFFu]); }
+void scan_store(uint i, uint upto, uint own) { store_slot(ray_list.order, i, order_kept[upto & 0x7FFFFFFFu]); }
 void scan_total(uint total) {}
 #elif defined(SCAN_PAIRS)
 // Pairs that survived their test → the list of the next level: no gaps, no reordering (R 4.4).

@@ -4,11 +4,14 @@
 // invocations within a block and elements within an invocation's run all keep their order.
 #ifndef SHEAF_SORT_GLSL
 #define SHEAF_SORT_GLSL
+#include "lib/common.glsl"
+#include "interface/push/lists.h"
+#include "lib/push.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_CHUNKS, readonly, uvec3, chunks);
 BUFFER(ROLE_CHUNKS_ALT, writeonly, uvec3, chunks_sorted);
 BUFFER(ROLE_BLOCK_SUMS, coherent, uint, digit_counts);  // [digit][block]
-layout(push_constant) uniform Push { uint shift; } push;
+PUSH(SortPush);
 shared uint own_counts[RADIX * SCAN_GROUP];  // [digit][invocation]
 
 uint digit_of(uint i) { return (chunks[i].x >> push.shift) & (RADIX - 1u); }

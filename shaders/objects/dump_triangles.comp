@@ -4,14 +4,12 @@
 // Corners of the triangles from `first` on, as `--dump` writes them.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/objects.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/memory.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer DumpCorners { vec3 corner[]; };
-layout(push_constant) uniform Push {
-  uvec2 to;
-  uint first;
-  uint count;
-} push;
+PUSH(DumpTrianglesPush);
 
 void main() {
   uint i = global_index();

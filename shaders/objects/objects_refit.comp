@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 // Boxes of the object hierarchy's nodes, one height at a time from the leaves: a node's height is listed once all its
 // children's are done. Boxes of triangles are widened by box_pad, so that triangle.glsl's argument holds.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/objects.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/node.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer Words { uint word[]; };
-BUFFER(ROLE_WORK, readonly, uint, work);  // nodes of this height
-layout(push_constant) uniform Push {
-  uint first;
-  uint count;
-} push;
+BUFFER(ROLE_REFIT_NODES, readonly, uint, work);  // nodes of this height
+PUSH(RefitPush);
 
 void leaf_box(uint child, out vec3 lo, out vec3 hi) {
   uint first = leaf_first(child), count = leaf_count(child);

@@ -6,14 +6,14 @@
 // may add to a triangle (triangle.glsl).
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/objects.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/memory.glsl"
 #include "trace/common/ray_node.glsl"
 BUFFER(ROLE_SPHERES, coherent, vec4, spheres);
 BUFFER(ROLE_RUNS, readonly, uvec2, runs);  // first triangle, how many
-layout(push_constant) uniform Push {
-  uint runs;  // not 0: of so many runs, one an invocation, instead of the triangles
-} push;
+PUSH(SpheresPush);
 
 vec4 padded(vec3 centre, float radius) { return vec4(centre, radius * (1.0 + PAD) + 2.0 * frame.box_pad); }
 

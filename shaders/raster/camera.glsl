@@ -2,6 +2,8 @@
 // The camera's ray through a place in a pixel, the same bits in the raster pass and in generate (SHADING.md, Samples).
 #ifndef SHEAF_CAMERA_GLSL
 #define SHEAF_CAMERA_GLSL
+#include "lists/rays.glsl"
+#include "lib/frame.glsl"
 Ray camera_ray(uint x, uint y, vec2 place) {
   precise float sx = 2.0 * ((float(x) + place.x) / float(frame.width)) - 1.0;
   precise float sy = 1.0 - 2.0 * ((float(y) + place.y) / float(frame.height));

@@ -2,6 +2,7 @@
 // Which pixel of the tile the camera's ray i goes through, where each has one.
 #ifndef SHEAF_CAMERA_PIXELS_GLSL
 #define SHEAF_CAMERA_PIXELS_GLSL
+#include "lib/frame.glsl"
 #include "lib/convert.glsl"
 #include "lib/curves.glsl"
 

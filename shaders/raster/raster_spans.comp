@@ -14,21 +14,18 @@
 // spare.
 #define COMPUTE
 #include "lib/common.glsl"
-#extension GL_EXT_control_flow_attributes : require
+#include "interface/push/raster.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "raster/camera.glsl"
 #include "scene/attributes.glsl"
 #include "lib/convert.glsl"
 layout(constant_id = SPEC_MASKED) const bool MASKED = true;
-layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup
 #include "lib/lanes.glsl"
 BUFFER(ROLE_VISIBILITY, coherent, uint64_t, visibility);
 layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer OneFloat { float v; };
-layout(push_constant) uniform Push {
-  uvec2 shown;   // the visibility buffer: by address its words are loaded in half the time
-  uint bands;    // of rows, for few triangles to keep all cores busy
-} push;
+PUSH(RasterSpansPush);
 
 const float EPSILON = 4.76837158203125e-7;  // 2^-21
 const uint FEW = 48u;                       // samples of a rectangle that a lane tests alone

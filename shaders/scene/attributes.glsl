@@ -2,6 +2,8 @@
 // Vertex attributes at a point of a triangle.
 #ifndef SHEAF_ATTRIBUTES_GLSL
 #define SHEAF_ATTRIBUTES_GLSL
+#include "scene/memory.glsl"
+#include "scene/scene.glsl"
 #include "scene/textures.glsl"
 
 struct ShadingInputs {

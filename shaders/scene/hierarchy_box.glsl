@@ -2,6 +2,8 @@
 // The box of the whole object hierarchy: the union of the root's children. lo > hi where there is nothing.
 #ifndef SHEAF_HIERARCHY_BOX_GLSL
 #define SHEAF_HIERARCHY_BOX_GLSL
+#include "scene/node.glsl"
+#include "lib/common.glsl"
 #include "scene/node_boxes.glsl"
 
 void hierarchy_box(out vec3 lo, out vec3 hi) {

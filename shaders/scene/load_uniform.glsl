@@ -3,6 +3,9 @@
 // lanes, and handed round.
 #ifndef SHEAF_LOAD_UNIFORM_GLSL
 #define SHEAF_LOAD_UNIFORM_GLSL
+#include "lib/lanes.glsl"
+#include "scene/memory.glsl"
+#include "scene/node.glsl"
 struct Held {
   uvec2 low, high;
 };

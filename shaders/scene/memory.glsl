@@ -4,9 +4,10 @@
 // behind an address may be larger than maxStorageBufferRange. Indices come from buffers that the engine filled itself.
 #ifndef SHEAF_MEMORY_GLSL
 #define SHEAF_MEMORY_GLSL
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_buffer_reference_uvec2 : require
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
+#include "interface/scene.h"
+#include "interface/hierarchy.h"
 // Triangles are transformed by their instances whenever they are read: only their last word is kept.
 layout(constant_id = SPEC_TRANSFORM_ON_FETCH) const bool TRANSFORM_ON_FETCH = false;
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer TrianglePairs {
@@ -109,7 +110,7 @@ TextureUse load_use(uint material, uint place) {
 
 struct Corners {
   vec3 a, b, c;
-  uint instance;  // and flags, see shared.h
+  uint instance;  // and flags, see interface/scene.h
 };
 
 Corners unpack_triangle(uvec2 p0, uvec2 p1, uvec2 p2, uvec2 p3, uvec2 p4) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Nodes of the object hierarchy: eight boxes on a grid of the node's own (shared.h). Decoding is monotone, and what
-// encodes (objects_refit) rounds outwards until the decoded box holds the true one: the containment that triangle.glsl
-// relies on.
+// Nodes of the object hierarchy: eight boxes on a grid of the node's own (interface/hierarchy.h). Decoding is monotone,
+// and what encodes (objects_refit) rounds outwards until the decoded box holds the true one: the containment that
+// triangle.glsl relies on.
 #ifndef SHEAF_NODE_GLSL
 #define SHEAF_NODE_GLSL
+#include "interface/hierarchy.h"
 #include "scene/memory.glsl"
 
 struct Grid {

@@ -2,6 +2,8 @@
 // A node's boxes, each lane's own node. (Where all lanes want the same node: bundle_rays.glsl.)
 #ifndef SHEAF_NODE_BOXES_GLSL
 #define SHEAF_NODE_BOXES_GLSL
+#include "scene/memory.glsl"
+#include "scene/node.glsl"
 Boxes load_boxes(uint node) {
   NodePairs words = node_pairs(node);
   return Boxes(unpack_grid(unpack32(words.pair[0]), unpack32(words.pair[1])), unpack32(words.pair[2]),

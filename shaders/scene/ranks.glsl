@@ -8,6 +8,11 @@
 // SHADING.md, Coincident surfaces, has the rule and the bound.
 #ifndef SHEAF_RANKS_GLSL
 #define SHEAF_RANKS_GLSL
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
+#include "interface/scene.h"
+#include "scene/memory.glsl"
+#include "scene/triangle.glsl"
 layout(constant_id = SPEC_RANKED) const bool RANKED = false;
 
 const float STEP = 1.9073486e-6;        // 2^-19

@@ -2,6 +2,7 @@
 // Reading triangles.
 #ifndef SHEAF_SCENE_GLSL
 #define SHEAF_SCENE_GLSL
+#include "lib/frame.glsl"
 #include "scene/memory.glsl"
 #include "scene/triangle.glsl"
 #include "scene/ranks.glsl"

@@ -2,7 +2,7 @@
 // Texture lookups from plain buffers: one filter, the same bits on every device and in every kernel.
 #ifndef SHEAF_TEXTURES_GLSL
 #define SHEAF_TEXTURES_GLSL
-#extension GL_EXT_control_flow_attributes : require
+#include "scene/memory.glsl"
 #include "lib/convert.glsl"
 layout(constant_id = SPEC_TEXTURED) const bool TEXTURED = true;
 

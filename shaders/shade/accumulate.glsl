@@ -2,6 +2,8 @@
 // Sums a pixel's light in 32.32 fixed point: integer addition has no order, so neither has the picture.
 #ifndef SHEAF_ACCUMULATE_GLSL
 #define SHEAF_ACCUMULATE_GLSL
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
 #include "lib/convert.glsl"
 // R G B alpha.
 layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer PixelSums { uint64_t channel[4]; };

@@ -6,6 +6,9 @@
 // base + i and shadow slots (base + i) + light · parents; a slot without a ray is marked, and compaction drops it.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/shading.h"
+#include "interface/push/shade.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "shade/surface.glsl"
@@ -24,15 +27,7 @@ layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;    // some
 // What is seen through such surfaces is not covered.
 layout(constant_id = SPEC_GLASS_ALPHA) const bool GLASS_ALPHA = false;
 
-layout(push_constant) uniform Push {
-  uint kind;        // of the parents
-  uint direct;      // 1: the parents are the camera's rays, and were not written: raster knows what they hit
-  uint sums;        // SUMS_…, of the pixels
-  PUSH_LIST
-  uvec2 shadow_rays;
-  uvec2 reflection_rays;
-  uvec2 refraction_rays;
-} push;
+PUSH(GeneratePush);
 
 #include "shade/parents.glsl"
 
@@ -83,12 +78,12 @@ vec3 light_arriving(Light light, vec3 point, out vec3 towards, out float distanc
   return min(l * (fade / max(distance * distance, 1e-30)), vec3(1e9));
 }
 
-void no_ray_shadow(uint slot) { store_no_ray(push.shadow_rays, slot); }
+void no_ray_shadow(uint slot) { store_no_ray(ray_list.shadow_rays, slot); }
 void no_ray_reflection(uint slot) {
-  if (REFLECTIONS) store_no_ray(push.reflection_rays, slot);
+  if (REFLECTIONS) store_no_ray(ray_list.reflection_rays, slot);
 }
 void no_ray_refraction(uint slot) {
-  if (REFRACTIONS) store_no_ray(push.refraction_rays, slot);
+  if (REFRACTIONS) store_no_ray(ray_list.refraction_rays, slot);
 }
 
 void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight, Lobes lobes, vec3 v, uint pixel) {
@@ -116,7 +111,7 @@ void make_shadow_ray(uint slot, Light light, uint index, Surface s, vec3 weight,
   } else {
     direction = tmax > 0.0 ? direction / tmax : -l;
   }
-  store_ray(push.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayPayload(carried, 0.0, index, 0u));
+  store_ray(ray_list.shadow_rays, slot, Ray(origin, direction, tmin, tmax), pixel, RayPayload(carried, 0.0, index, 0u));
 }
 
 // What a hit leaves of its parent's cone (SHADING.md, Texture filter). `bending`: what a unit of the surface's
@@ -137,9 +132,9 @@ void make_reflection_ray(uint slot, Surface s, float t, vec3 weight, Parent p) {
   vec3 o;
   float tmin;
   start_ray(s, s.geometric, d, s.rank_behind, o, tmin);
-  store_ray(push.reflection_rays, slot, Ray(o, d, tmin, INFINITY), p.pixel,
+  store_ray(ray_list.reflection_rays, slot, Ray(o, d, tmin, INFINITY), p.pixel,
             RayPayload(weight, 0.0, p.medium, p.past + ONE_BOUNCE));
-  if (TEXTURED) store_ray_cone(push.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
+  if (TEXTURED) store_ray_cone(ray_list.reflection_rays, slot, cone_after(p, s, t, 1.0, 2.0));
 }
 
 // Through the surface; `carried.past` counts this too.
@@ -147,8 +142,8 @@ void store_ray_through(uint slot, Surface s, vec3 direction, RayPayload carried,
   vec3 o;
   float tmin;
   start_ray(s, -s.geometric, direction, s.rank, o, tmin);
-  store_ray(push.refraction_rays, slot, Ray(o, direction, tmin, INFINITY), pixel, carried);
-  if (TEXTURED) store_ray_cone(push.refraction_rays, slot, cone);
+  store_ray(ray_list.refraction_rays, slot, Ray(o, direction, tmin, INFINITY), pixel, carried);
+  if (TEXTURED) store_ray_cone(ray_list.refraction_rays, slot, cone);
 }
 
 bool make_refraction_ray(uint slot, Surface s, vec3 direction, vec3 weight, uint medium, float coverage, Parent p,
@@ -310,7 +305,7 @@ void main() {
   uint parents = counters[COUNT_PARENTS];
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
   uvec2 hit;
-  Parent p = RASTER && push.direct != 0u ? camera_parent(i, hit) : load_parent(i, hit);
+  Parent p = RASTER && push.direct != 0u ? camera_parent(i, hit) : load_parent(ray_list, push.kind, i, hit);
   bool hits = is_active && hit.x != NO_INDEX;
   count_tests(push.kind, STAT_HITS, hits ? 1u : 0u);
   if (continues(hits)) shade_hit(slot, parents, value_or_first(hit.x, hits), uintBitsToFloat(hit.y), p, hits);

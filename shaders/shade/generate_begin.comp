@@ -5,14 +5,13 @@
 // does not fit stops here, says so, and is cut in two by the host: nothing is dropped.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/shade.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/args.glsl"
 BUFFER(ROLE_STATS, coherent, uint64_t, stats);
-layout(push_constant) uniform Push {
-  uint primary;
-  uint direct;  // 1: the camera's rays are not written before
-} push;
+PUSH(GenerateBeginPush);
 
 void main() {
   if (local_index() != 0u) return;

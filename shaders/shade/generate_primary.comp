@@ -5,6 +5,8 @@
 // goes on with. Under `--primary raster` their hits come with them: the visibility buffer names the triangle and its t.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "raster/camera.glsl"
 #include "lib/counters.glsl"
@@ -16,7 +18,7 @@ BUFFER(ROLE_SAMPLE_PLACES, readonly, vec2, sample_places);
 layout(constant_id = SPEC_RASTER) const bool RASTER = true;
 layout(constant_id = SPEC_ADAPTIVE) const bool ADAPTIVE = false;
 layout(constant_id = SPEC_TEXTURED) const bool TEXTURED = true;
-layout(push_constant) uniform Push { PUSH_LIST } push;
+PUSH(NoPush);
 
 void main() {
   uint i = global_index();
@@ -40,7 +42,7 @@ void main() {
   }
   uint pixel = at.y * frame.tile_width + at.x;
   Ray ray = camera_ray(frame.tile_x + at.x, frame.tile_y + at.y, place);
-  store_ray(push.rays, i, ray, pixel, RayPayload(vec3(1), 1.0, 0u, 0u));
-  if (TEXTURED) store_ray_cone(push.rays, i, vec2(frame.cone_width, frame.cone_spread));
-  hit_at(push.hits, i).v = RASTER ? visibility[pixel] : pack64(uvec2(NO_INDEX));
+  store_ray(ray_list.rays, i, ray, pixel, RayPayload(vec3(1), 1.0, 0u, 0u));
+  if (TEXTURED) store_ray_cone(ray_list.rays, i, vec2(frame.cone_width, frame.cone_spread));
+  hit_at(ray_list.hits, i).v = RASTER ? visibility[pixel] : pack64(uvec2(NO_INDEX));
 }

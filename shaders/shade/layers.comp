@@ -4,22 +4,25 @@
 // The surface layers (--aov) of the camera's first hits: structure of arrays, word w of a pixel at w · pixels + pixel.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/shading.h"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "shade/surface.glsl"
 BUFFER(ROLE_LAYERS, writeonly, float, layers);
-layout(push_constant) uniform Push { PUSH_LIST } push;
+PUSH(NoPush);
 
 void main() {
   uint i = global_index(), pixels = frame.tile_width * frame.tile_height;
   bool is_active = i < pixels;
   i = min(i, pixels - 1u);
-  uint triangle = unpack32(hit_at(push.hits, i).v).x, pixel = load_ray_pixel(push.rays, i);
+  uint triangle = unpack32(hit_at(ray_list.hits, i).v).x, pixel = load_ray_pixel(ray_list.rays, i);
   bool hits = is_active && triangle != NO_INDEX;
   float words[LAYER_WORDS];
   if (continues(hits)) {
     triangle = value_or_first(triangle, hits);
-    Ray ray = load_ray(push.rays, i);
+    Ray ray = load_ray(ray_list.rays, i);
     Corners corners = load_triangle(triangle);
     TriangleHit at = project_to_triangle(make_shear(ray.origin, ray.direction), corners.a, corners.b, corners.c, 0.0);
     Material material;

@@ -3,6 +3,9 @@
 // of lamps.
 #ifndef SHEAF_LOBES_GLSL
 #define SHEAF_LOBES_GLSL
+#include "lib/unit.glsl"
+#include "scene/fresnel.glsl"
+#include "shade/surface.glsl"
 struct Lobes {
   vec3 f0;           // of the mirroring lobe, straight on
   // Fs: all that is mirrored of the way seen, whether by the reflection ray or from the surroundings at large.

@@ -3,6 +3,11 @@
 // `hit`: the triangle, NO_INDEX for none, and t.
 #ifndef SHEAF_PARENTS_GLSL
 #define SHEAF_PARENTS_GLSL
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
+#include "lists/rays.glsl"
+#include "scene/textures.glsl"
+#include "interface/rays.h"
 #include "raster/camera.glsl"
 #include "raster/camera_pixels.glsl"
 layout(constant_id = SPEC_RASTER) const bool RASTER = true;
@@ -18,18 +23,18 @@ struct Parent {
   float cone_width, cone_spread;
 };
 
-Parent load_parent(uint i, out uvec2 hit) {
-  uint slot = push.kind == KIND_PRIMARY ? i : load_slot(push.order, i);
-  hit = unpack32(hit_at(push.hits, slot).v);
+Parent load_parent(ListAddresses list, uint kind, uint i, out uvec2 hit) {
+  uint slot = kind == KIND_PRIMARY ? i : load_slot(list.order, i);
+  hit = unpack32(hit_at(list.hits, slot).v);
   Parent p;
-  p.ray = load_ray(push.rays, slot);
-  RayPayload carried = load_ray_payload(push.rays, slot);
+  p.ray = load_ray(list.rays, slot);
+  RayPayload carried = load_ray_payload(list.rays, slot);
   p.weight = carried.weight;
   p.coverage = carried.coverage;
   p.medium = carried.medium;
   p.past = carried.past;
-  p.pixel = load_ray_pixel(push.rays, slot);
-  vec2 cone = TEXTURED ? load_ray_cone(push.rays, slot) : vec2(0);
+  p.pixel = load_ray_pixel(list.rays, slot);
+  vec2 cone = TEXTURED ? load_ray_cone(list.rays, slot) : vec2(0);
   p.cone_width = cone.x;
   p.cone_spread = cone.y;
   return p;

@@ -4,13 +4,12 @@
 // The mean of a pixel's samples, from fixed point to float: linear, premultiplied.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/shade.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "shade/accumulate.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer PixelPairs { uint64_t pair[2]; };
-layout(push_constant) uniform Push {
-  uvec2 output_at;
-  float inverse_samples;
-} push;
+PUSH(ResolvePush);
 
 float mean_of(uint64_t sum) {
   uvec2 v = unpack32(sum);

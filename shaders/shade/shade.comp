@@ -5,6 +5,9 @@
 // parent by parent, whose rays' light is one sum.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/shading.h"
+#include "interface/push/shade.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "shade/accumulate.glsl"
 #include "lib/counters.glsl"
@@ -12,15 +15,11 @@
 BUFFER(ROLE_OPTICAL_DEPTH, readonly, int, optical_depth);
 layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;
 layout(constant_id = SPEC_BY_PARENT) const bool BY_PARENT = false;
-layout(push_constant) uniform Push {
-  uint kind;  // of the parents
-  uint sums;  // SUMS_…, of the pixels
-  PUSH_LIST
-} push;
+PUSH(ShadePush);
 
 // Of a ray that got through.
 vec3 light_of(uint slot) {
-  vec3 light = load_ray_payload(push.rays, slot).weight;
+  vec3 light = load_ray_payload(ray_list.rays, slot).weight;
   if (TRANSLUCENT) {
     ivec3 depth =
         max(ivec3(optical_depth[3u * slot], optical_depth[3u * slot + 1u], optical_depth[3u * slot + 2u]), ivec3(0));
@@ -29,7 +28,7 @@ vec3 light_of(uint slot) {
   return light;
 }
 
-bool is_blocked(uint slot) { return unpack32(hit_at(push.hits, slot).v).x != NO_INDEX; }
+bool is_blocked(uint slot) { return unpack32(hit_at(ray_list.hits, slot).v).x != NO_INDEX; }
 
 void add_light(uint pixel, uint64_t sum[4]) {
   if (push.sums == SUMS_OWN)
@@ -44,7 +43,7 @@ void shade_parent(uint i) {
   uint slot = i + (push.kind == KIND_REFRACTION ? counters[COUNT_RAYS + KIND_REFLECTION] : 0u);
   uint64_t sum[4] = uint64_t[4](0ul, 0ul, 0ul, 0ul);
   for (uint k = 0u; k < frame.lights; ++k, slot += parents) {
-    uint of_ray = load_ray_pixel(push.rays, slot);
+    uint of_ray = load_ray_pixel(ray_list.rays, slot);
     if (of_ray == NO_INDEX) continue;  // no ray
     if (is_blocked(slot)) {
       ++blocked;
@@ -60,10 +59,10 @@ void shade_parent(uint i) {
 
 void shade_ray(uint i) {
   if (i >= counters[COUNT_RAYS + KIND_SHADOW]) return;
-  uint slot = load_slot(push.order, i);
+  uint slot = load_slot(ray_list.order, i);
   bool blocked = is_blocked(slot);
   count_tests(KIND_SHADOW, STAT_HITS, blocked ? 1u : 0u);
-  if (!blocked) add_light(load_ray_pixel(push.rays, slot), fixed_point(vec4(light_of(slot), 0.0)));
+  if (!blocked) add_light(load_ray_pixel(ray_list.rays, slot), fixed_point(vec4(light_of(slot), 0.0)));
 }
 
 void main() {

@@ -5,7 +5,11 @@
 // with another's.
 #ifndef SHEAF_SHADING_INPUTS_GLSL
 #define SHEAF_SHADING_INPUTS_GLSL
-layout(constant_id = SPEC_LANES) const uint LANES = 8;
+#include "lib/common.glsl"
+#include "lib/convert.glsl"
+#include "lib/frame.glsl"
+#include "scene/attributes.glsl"
+#include "scene/memory.glsl"
 #include "lib/lanes.glsl"
 const bool LOADS_BY_SUBGROUP = WORKERS > 0u && LANES >= 8u;
 

@@ -2,6 +2,10 @@
 // Everything a hit needs to know about the surface there (SHADING.md, Geometry and Material).
 #ifndef SHEAF_SURFACE_GLSL
 #define SHEAF_SURFACE_GLSL
+#include "lib/common.glsl"
+#include "scene/memory.glsl"
+#include "scene/ranks.glsl"
+#include "scene/scene.glsl"
 #include "scene/attributes.glsl"
 #include "lib/unit.glsl"
 #include "shade/shading_inputs.glsl"

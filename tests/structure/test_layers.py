@@ -60,7 +60,7 @@ def closure(uses: Graph) -> Graph:
 def forbidden(text: str, allowed: set[str], folders: set[str]) -> list[str]:
     """The folders that `text` includes and that are not allowed."""
     found = [folder for name in INCLUDE.findall(text) for folder in {f"engine/{name}", f"server/{name}"} & folders]
-    found += ["shaders/interface" for name in INCLUDE.findall(text) if name == "interface"]
+    found += ["shaders/interface" for name in INCLUDE.findall(text) if name.split("/")[0] == "interface"]
     return [folder for folder in found if folder not in allowed]
 
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device_world.hpp"
+#include "interface/push/cells.h"
 
 namespace sheaf::test {
 namespace {
@@ -170,12 +171,9 @@ std::vector<std::uint32_t> entered_by(const Batch& batch) {
   recorder.bind(ROLE_SURVIVORS, entered.buffer());
   recorder.bind(ROLE_PAIR_LEVELS, levels);
   const glm::uvec2 at = halves(frustums.address());
-  recorder.dispatch(frustums_of, at, blocks_of(count, gpu::GROUP));
+  recorder.dispatch(frustums_of, gpu::PacketsFrustumsPush{at}, blocks_of(count, gpu::GROUP));
   recorder.bind(ROLE_PAIRS, pair_buffer);
-  const struct {
-    glm::uvec2 frustums;
-    std::uint32_t kind, half_read, room, level, ray_level;
-  } push{at, kind, 0, count, 0, 3};
+  const gpu::PairsOpenPush push{at, kind, 0, count, 0, 3, 0};
   recorder.dispatch(open, push, blocks_of(count, gpu::GROUP));
   recorder.submit_and_wait();
   const auto found = first_pairs.values();

@@ -6,15 +6,12 @@
 #include <bit>
 
 #include "device_fixture.hpp"
+#include "interface/push/lists.h"
 
 namespace sheaf::test {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
-
-struct Push {
-  std::uint32_t kind, bits, light_bits;
-};
 
 std::uint32_t ordered(float v) {  // floats as integers of the same order
   const auto bits = std::bit_cast<std::uint32_t>(v);
@@ -59,7 +56,7 @@ class Batch {
 };
 
 /// A key a ray, in the rays' order.
-Words keys_of(const std::vector<TestRay>& rays, const Push& push, const Bounds& bounds = {},
+Words keys_of(const std::vector<TestRay>& rays, const gpu::HashPush& push, const Bounds& bounds = {},
               std::vector<gpu::Light> lights = std::vector<gpu::Light>(1)) {
   const Kernel hash(device(), "hash");
   const Batch batch(rays);
@@ -211,9 +208,7 @@ TEST(DeviceHash, BoundsHoldEveryOriginAndNoMore) {
       Recorder recorder(device());
       batch.bind(recorder);
       recorder.bind(ROLE_COUNTERS, counters);
-      struct {
-        std::uint32_t kind, reset;
-      } push{gpu::KIND_REFRACTION, 1};
+      gpu::BoundsPush push{gpu::KIND_REFRACTION, 1};
       recorder.dispatch(kernel, push, 1);
       push.reset = 0;
       recorder.dispatch(kernel, push, blocks_of(n));

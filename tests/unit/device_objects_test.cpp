@@ -6,6 +6,7 @@
 
 #include "device_fixture.hpp"
 #include "hierarchy/object_hierarchy.hpp"
+#include "interface/push/objects.h"
 
 namespace sheaf::test {
 namespace {
@@ -138,7 +139,7 @@ TEST(DeviceSpheres, HoldTheirTrianglesAndLittleElse) {
     const Output<glm::uvec2> unused(1);
     scene.recorder().bind(ROLE_SPHERES, spheres.buffer());
     scene.recorder().bind(ROLE_RUNS, unused.buffer());
-    scene.recorder().dispatch(kernel, 0U, blocks_of(triangles.size(), gpu::GROUP) + 1ULL);
+    scene.recorder().dispatch(kernel, gpu::SpheresPush{0}, blocks_of(triangles.size(), gpu::GROUP) + 1ULL);
     scene.recorder().submit_and_wait();
     const double pad = pad_of(triangles);
     const auto got = spheres.values();
@@ -167,7 +168,8 @@ TEST(DeviceSpheres, OfRunsHoldAllTheirTriangles) {
     std::ranges::copy(runs, table.view<glm::uvec2>().begin());
     scene.recorder().bind(ROLE_SPHERES, spheres.buffer());
     scene.recorder().bind(ROLE_RUNS, table);
-    scene.recorder().dispatch(kernel, static_cast<std::uint32_t>(runs.size()), blocks_of(runs.size(), gpu::GROUP));
+    scene.recorder().dispatch(kernel, gpu::SpheresPush{static_cast<std::uint32_t>(runs.size())},
+                              blocks_of(runs.size(), gpu::GROUP));
     scene.recorder().submit_and_wait();
     const auto got = spheres.values();
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -254,10 +256,10 @@ std::vector<std::uint32_t> refit(const Kernel& kernel, const ObjectHierarchy& tr
   for (const auto& nodes : heights) list.insert(list.end(), nodes.begin(), nodes.end());
   const Buffer nodes = addressed(words), work = buffer_of(list);
   OnDevice scene(triangles, {}, &nodes);
-  scene.recorder().bind(ROLE_WORK, work);
+  scene.recorder().bind(ROLE_REFIT_NODES, work);
   std::uint32_t first = 0;
   for (const auto& level : heights) {
-    const struct { std::uint32_t first, count; } push{first, static_cast<std::uint32_t>(level.size())};
+    const gpu::RefitPush push{first, static_cast<std::uint32_t>(level.size())};
     scene.recorder().dispatch(kernel, push, blocks_of(level.size(), gpu::GROUP));
     first += push.count;
   }

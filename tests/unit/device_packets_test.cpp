@@ -29,7 +29,7 @@ TEST(DevicePackets, PacketsAreCutWhereKeysChangeAndHoldEveryRay) {
     recorder.bind(ROLE_COUNTERS, counter_buffer);
     recorder.bind(ROLE_PACKETS, packets.buffer());
     recorder.bind(ROLE_BLOCK_SUMS, sums);
-    scan.record_blocks(recorder, {kind}, blocks_of(count));
+    scan.record_blocks(recorder, gpu::KindPush{kind}, blocks_of(count));
     recorder.submit_and_wait();
     ASSERT_TRUE(packets.values() == expected) << count << " rays";
     ASSERT_EQ(read<std::uint32_t>(recorder, counter_buffer, gpu::COUNT_WORDS)[gpu::COUNT_CELLS], expected.size() - 1);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "device_fixture.hpp"
+#include "interface/push/trace.h"
 #include "stages/rays_hierarchy.hpp"
 #include "stages/tracer.hpp"
 
@@ -212,13 +213,10 @@ TEST(DeviceRaysHierarchy, BundlesThatAreWideGoAlone) {
       const Output<std::uint32_t> work(blocks_of(count, bundle));
       Buffer args = buffer_of(std::vector<std::uint32_t>(std::size_t{gpu::ARGS_COUNT} * 3));
       const Output<std::uint64_t> hits(count);
-      on_device.recorder().bind(ROLE_WORK, work.buffer());
+      on_device.recorder().bind(ROLE_INCOHERENT_BUNDLES, work.buffer());
       on_device.recorder().bind(ROLE_ARGS, args);
       on_device.recorder().bind_list(LIST_HITS, hits.buffer());
-      const struct {
-        std::uint32_t kind, most_effort;
-        float widest;
-      } push{kind, 250, 0.1F};
+      const gpu::TraverseBundlesPush push{kind, 250, 0.1F};
       on_device.recorder().dispatch(kernel, push, blocks_of(count, bundle) + 1ULL);
       on_device.recorder().submit_and_wait();
       std::vector<std::uint32_t> expected;

@@ -34,9 +34,9 @@ Scanned run(const Scan& scan, const Words& in, Dispatch how) {
   recorder.bind(ROLE_BLOCK_SUMS, sums.buffer());
   recorder.bind(ROLE_ARGS, args);
   if (how == Dispatch::indirect)
-    scan.record(recorder, {}, gpu::ARGS_BLOCKS);
+    scan.record(recorder, gpu::KindPush{}, gpu::ARGS_BLOCKS);
   else
-    scan.record_blocks(recorder, {}, blocks + (how == Dispatch::too_many_groups ? 3 : 0));
+    scan.record_blocks(recorder, gpu::KindPush{}, blocks + (how == Dispatch::too_many_groups ? 3 : 0));
   recorder.submit_and_wait();
   (void)sums.values();  // its guard
   return {out.values(), counters.view<std::uint32_t>()[1]};
@@ -214,7 +214,7 @@ TEST(DeviceCompact, SurvivingPairsKeepTheirOrder) {
       recorder.bind(ROLE_PAIRS_NEXT, next.buffer());
       recorder.bind(ROLE_COUNTERS, words);
       recorder.bind(ROLE_BLOCK_SUMS, sums.buffer());
-      scan.record_blocks(recorder, {}, blocks_of(n));
+      scan.record_blocks(recorder, gpu::KindPush{}, blocks_of(n));
       recorder.submit_and_wait();
       ASSERT_EQ(words.view<std::uint32_t>()[gpu::COUNT_SURVIVORS], expected.size()) << name << ' ' << n;
       ASSERT_TRUE(next.values() == expected) << name << ' ' << n;

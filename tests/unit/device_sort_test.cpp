@@ -75,19 +75,19 @@ class Chain {
     r.bind(ROLE_KEYS, m.keys);
     r.bind(ROLE_CHUNKS, m.chunks);
     r.bind(ROLE_SKELETON, m.skeleton);
-    r.bind(ROLE_SCAN_OUT, m.order_kept);
+    r.bind(ROLE_ORDER_KEPT, m.order_kept);
     for (const auto* scratch : {&m.chunks, &m.chunks_alt, &m.skeleton, &m.order_kept, &m.digits})
       r.fill(*scratch, 0xEEEEEEEEU);
   }
   void compress() {
-    compress_.record(world_.recorder(), {kind}, gpu::ARGS_BLOCKS);
-    world_.recorder().dispatch_indirect(sizes_, kind, gpu::ARGS_CHUNKS);
+    compress_.record(world_.recorder(), gpu::KindPush{kind}, gpu::ARGS_BLOCKS);
+    world_.recorder().dispatch_indirect(sizes_, gpu::KindPush{kind}, gpu::ARGS_CHUNKS);
   }
   void sort(std::uint32_t bits) { in_alt_ = sort_.record_passes(world_.recorder(), world_.memory(), bits); }
   void decompress() {
-    world_.recorder().dispatch_indirect(fill_, kind, gpu::ARGS_BLOCKS);
-    starts_.record(world_.recorder(), {kind}, gpu::ARGS_CHUNKS);
-    segmented_.record(world_.recorder(), {kind}, gpu::ARGS_BLOCKS);
+    world_.recorder().dispatch_indirect(fill_, gpu::KindPush{kind}, gpu::ARGS_BLOCKS);
+    starts_.record(world_.recorder(), gpu::KindPush{kind}, gpu::ARGS_CHUNKS);
+    segmented_.record(world_.recorder(), gpu::KindPush{kind}, gpu::ARGS_BLOCKS);
   }
 
   std::uint32_t counter(std::uint32_t index) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device_fixture.hpp"
+#include "interface/push/trace.h"
 
 namespace sheaf::test {
 namespace {
@@ -22,10 +23,6 @@ static_assert(sizeof(Node) == gpu::RAY_NODE_WORDS * 4);
 
 struct Seed {
   std::uint32_t node, first_object, before, unused;
-};
-
-struct Push {
-  std::uint32_t kind, level, first_word, nodes, candidates, offset, seeds;
 };
 
 struct Ray {
@@ -109,7 +106,7 @@ struct Tested {
   std::vector<std::uint32_t> survives;
 };
 
-Tested test_pairs(const Kernel& kernel, const Bindings& b, const Push& push) {
+Tested test_pairs(const Kernel& kernel, const Bindings& b, const gpu::TraversePairsPush& push) {
   const Output<glm::uvec2> pairs(push.candidates);
   const Output<std::uint32_t> survivors(push.candidates);
   const Buffer counters = buffer_of(std::vector<std::uint32_t>(gpu::COUNT_WORDS));
@@ -121,7 +118,7 @@ Tested test_pairs(const Kernel& kernel, const Bindings& b, const Push& push) {
   if (b.rays) recorder.bind_list(LIST_RAYS, b.rays);
   if (b.order) recorder.bind_list(LIST_ORDER, b.order);
   bind(ROLE_FRAME, b.frame);
-  bind(ROLE_SKELETON, b.seeds);
+  bind(ROLE_SEEDS, b.seeds);
   bind(ROLE_PAIRS_NEXT, b.parents);
   bind(ROLE_SPHERES, b.spheres);
   bind(ROLE_PAIRS, pairs.buffer());
@@ -154,7 +151,7 @@ TEST(DeviceNodeTest, NoNodeIsCulledThatHoldsARayWhichMeetsTheSphere) {
     b.ray_nodes = buffer_of(nodes);
     b.spheres = buffer_of(spheres);
     b.seeds = buffer_of(seeds);
-    const Tested got = test_pairs(kernel, b, {kind, 1, 0, count, count, 0, count});
+    const Tested got = test_pairs(kernel, b, {kind, 1, 0, count, count, 0, count, 0});
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool far_apart = clearly_apart(nodes[i], spheres[i]);
       ASSERT_FALSE(far_apart && must_survive[i]) << "the test contradicts itself";
@@ -201,7 +198,7 @@ TEST(DeviceNodeTest, NoRayIsCulledThatMeetsTheSphere) {
     b.frame = buffer_of(std::vector{frame});
     b.parents = buffer_of(opened);
     b.spheres = buffer_of(spheres);
-    const Tested got = test_pairs(kernel, b, {kind, 0, 0, rays, parents * gpu::ARITY, 0, 0});
+    const Tested got = test_pairs(kernel, b, {kind, 0, 0, rays, parents * gpu::ARITY, 0, 0, 0});
     for (std::uint32_t i = 0; i < parents * gpu::ARITY; ++i) {
       ASSERT_EQ(got.pairs[i], glm::uvec2(i, i / gpu::ARITY));
       if (i >= rays) {
@@ -241,7 +238,7 @@ TEST(DeviceNodeTest, SeedsOpenIntoTheirRunsOfObjects) {
   b.spheres = buffer_of(std::vector<glm::vec4>(objects, {0, 0, 0, 1}));
   b.seeds = buffer_of(seeds);
   const auto count = static_cast<std::uint32_t>(seeds.size());
-  const Tested got = test_pairs(kernel, b, {kind, 1, 0, nodes, candidates, offset, count});
+  const Tested got = test_pairs(kernel, b, {kind, 1, 0, nodes, candidates, offset, count, 0});
   expected.erase(expected.begin(), expected.begin() + offset);
   expected.resize(candidates);
   EXPECT_TRUE(got.pairs == expected);

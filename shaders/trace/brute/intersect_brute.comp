@@ -5,30 +5,26 @@
 // triangles, so that no dispatch runs for minutes.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/trace.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "trace/common/candidate.glsl"
 #include "trace/common/results.glsl"
 #include "lib/counters.glsl"
 #include "lib/counting.glsl"
-layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
-layout(push_constant) uniform Push {
-  uint kind;
-  uint first;
-  uint last;
-  PUSH_LIST
-} push;
+PUSH(IntersectBrutePush);
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = load_slot(push.order, i);
-  Ray ray = load_ray(push.rays, slot);
+  uint slot = load_slot(ray_list.order, i);
+  Ray ray = load_ray(ray_list.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
   if (push.first > 0u) {  // go on from the slices before
-    uint64_t found = hit_at(push.hits, slot).v;
+    uint64_t found = hit_at(ray_list.hits, slot).v;
     shade.blocked = found != NO_HIT;
     if (found != NO_HIT) {
       best = Nearest(uintBitsToFloat(uint(found >> 32)), uint(found));
@@ -51,9 +47,9 @@ void main() {
     }
   }
   if (ANY_HIT)
-    store_shade(push.hits, slot, shade);
+    store_shade(ray_list.hits, slot, shade);
   else
-    store_nearest(push.hits, slot, best);
+    store_nearest(ray_list.hits, slot, best);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
-  count_pixel(load_ray_pixel(push.rays, slot), tests);
+  count_pixel(load_ray_pixel(ray_list.rays, slot), tests);
 }

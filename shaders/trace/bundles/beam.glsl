@@ -3,6 +3,8 @@
 // multiplication, monotone under rounding), so that no box is missed that one of its rays enters.
 #ifndef SHEAF_BEAM_GLSL
 #define SHEAF_BEAM_GLSL
+#include "lib/common.glsl"
+#include "scene/triangle.glsl"
 
 struct Beam {
   vec3 near_origin, far_origin;  // a coordinate: the origin from which a box's near (far) plane is reached first (last)

@@ -3,13 +3,11 @@
 // all lanes run, so it is done for many at once.
 #ifndef SHEAF_BUNDLE_QUEUE_GLSL
 #define SHEAF_BUNDLE_QUEUE_GLSL
-const uint QUEUE = LEAF_TRIANGLES * (2u * HELD_LEAVES);
-uint q_vector[QUEUE], q_triangle[QUEUE];
-float q_t[QUEUE];
-uint queued = 0u;  // of this lane
-
-// No lane has more of either; the same in all.
-uint most_held = 0u, most_queued = 0u;
+#include "lib/convert.glsl"
+#include "lists/rays.glsl"
+#include "scene/attributes.glsl"
+#include "trace/bundles/bundle_state.glsl"
+#include "trace/common/candidate.glsl"
 
 bool is_room(uint holding, uint queueing) {
   return holding < HELD_LEAVES && (!asks_materials() || queueing + LEAF_TRIANGLES * (holding + 1u) <= QUEUE);
@@ -18,42 +16,45 @@ bool is_room(uint holding, uint queueing) {
 // For what one more leaf of one vector may add: itself, or hits; what waits are hits to be. Lanes are asked where what
 // they may have does not tell.
 bool waiting_has_room() {
-  if (is_room(most_held, most_queued)) return true;
-  most_held = to_uint(max_lanes(float(held)));
-  if (asks_materials()) most_queued = to_uint(max_lanes(float(queued)));
-  return is_room(most_held, most_queued) || !any_lane(!is_room(held, queued));
+  if (is_room(bundle.most_held, bundle.most_queued)) return true;
+  bundle.most_held = to_uint(max_lanes(float(bundle.held)));
+  if (asks_materials()) bundle.most_queued = to_uint(max_lanes(float(bundle.queued)));
+  return is_room(bundle.most_held, bundle.most_queued) || !any_lane(!is_room(bundle.held, bundle.queued));
 }
 
 void queue_pending(uint v, Pending pending) {
   if (pending.triangle == NO_INDEX) return;
-  q_vector[queued] = v;
-  q_triangle[queued] = pending.triangle;
-  q_t[queued] = pending.t;
-  ++queued;
+  bundle.queued_vector[bundle.queued] = v;
+  bundle.queued_triangle[bundle.queued] = pending.triangle;
+  bundle.queued_t[bundle.queued] = pending.t;
+  ++bundle.queued;
 }
 
 // What is asked depends on the barycentrics: the same test once more, which gives the same bits.
 void settle_one(uint v, uint triangle, float t) {
-  Ray ray = load_ray(push.rays, load_slot(push.order, first_ray + v * LANES + lane));
+  Ray ray = load_ray(bundle.list.rays, load_slot(bundle.list.order, bundle.first_ray + v * LANES + bundle.lane));
   TriangleHit h = intersect_corners(make_shear(ray.origin, ray.direction), load_triangle(triangle), ray.tmin, ray.tmax);
   if (ANY_HIT) {
     ivec3 passed = ivec3(0);
     if (crossing(triangle, h.barycentric, ray.direction, t, ray.tmax, passed)) {
-      r_optical_depth[v] += passed;
+      bundle.optical_depth[v] += passed;
     } else {
-      r_triangle[v] = triangle;
-      r_end[v] = t;
-      r_t[v] = -INFINITY;
+      bundle.triangle[v] = triangle;
+      bundle.end[v] = t;
+      bundle.nearest[v] = -INFINITY;
     }
     return;
   }
-  if (!(t < r_t[v] || (t == r_t[v] && triangle < r_triangle[v])) || masked_out(triangle, h.barycentric)) return;
-  r_triangle[v] = triangle;
-  r_t[v] = t;
+  if (!(t < bundle.nearest[v] || (t == bundle.nearest[v] && triangle < bundle.triangle[v])) ||
+      masked_out(triangle, h.barycentric))
+    return;
+  bundle.triangle[v] = triangle;
+  bundle.nearest[v] = t;
 }
 
 void settle_queue() {
-  for (uint e = 0u; e < queued; ++e) settle_one(q_vector[e], q_triangle[e], q_t[e]);
-  queued = most_queued = 0u;
+  for (uint e = 0u; e < bundle.queued; ++e)
+    settle_one(bundle.queued_vector[e], bundle.queued_triangle[e], bundle.queued_t[e]);
+  bundle.queued = bundle.most_queued = 0u;
 }
 #endif

@@ -8,7 +8,8 @@
 // Exact: see beam.glsl; the cone test is padded. Control flow as in single_ray.glsl.
 #define COMPUTE
 #include "lib/common.glsl"
-#extension GL_EXT_control_flow_attributes : require
+#include "interface/push/trace.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "trace/common/candidate.glsl"
@@ -18,15 +19,9 @@
 #include "lib/counting.glsl"
 #include "trace/common/visit.glsl"
 #include "trace/bundles/beam.glsl"
-BUFFER(ROLE_WORK, writeonly, uint, work);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint most_effort;
-  float widest;  // half-angle past which a bundle is incoherent
-  PUSH_LIST
-} push;
+PUSH(TraverseBundlesPush);
 
-#include "trace/bundles/bundle_rays.glsl"
+#include "trace/bundles/bundle_leaves.glsl"
 #include "trace/common/visit_subgroup.glsl"
 #include "trace/bundles/incoherent.glsl"
 
@@ -37,15 +32,15 @@ uint entered_children(Beam beam, Cone cone, uint node) {
   Boxes boxes = load_boxes_subgroup(node);
   uint entered = 0u;
   for (uint base = 0u; base < WIDE; base += LANES) {
-    uint c = base + lane;
+    uint c = base + bundle.lane;
     vec3 lo, hi;
     child_box(boxes, c & 7u, lo, hi);
     if (base == 0u)
-      lower_leaf = Leaf(lo, hi, 0u);
+      bundle.lower_leaf = Leaf(lo, hi, 0u);
     else
-      upper_leaf = Leaf(lo, hi, 0u);
+      bundle.upper_leaf = Leaf(lo, hi, 0u);
     bool is_active = c < WIDE && (boxes.grid.present & (1u << c)) != 0u;
-    if (is_active) ++node_tests;
+    if (is_active) ++bundle.node_tests;
     bool enters =
         is_active && beam_enters(beam, lo, hi) && cone_meets_sphere(cone, 0.5 * lo + 0.5 * hi, 0.5 * length(hi - lo));
     entered |= lanes_where(enters, WIDE) << base;
@@ -60,48 +55,46 @@ void visit_node(Beam beam, Cone cone, uint node) {
   uint entered_leaves = entered & leaf_children();
   visit_children_subgroup(visit, node, entered & ~entered_leaves);
   if (entered_leaves == 0u) return;
-  lower_leaf.word = children.x;
-  upper_leaf.word = children.y;
+  bundle.lower_leaf.word = children.x;
+  bundle.upper_leaf.word = children.y;
   hand_out_leaves(in_visiting_order(entered_leaves, visit.octant), visit.octant);
 }
 
 // Whether it came to the end: a bundle that finds too much to look at gives up.
 bool walk(Beam beam, Cone cone) {
   uint current = 0u;
-  while (current != CHILD_EMPTY || todo != 0u) {
-    while (todo == 0u && current != CHILD_EMPTY) {
-      if (++effort > push.most_effort) return false;
+  while (current != CHILD_EMPTY || bundle.todo != 0u) {
+    while (bundle.todo == 0u && current != CHILD_EMPTY) {
+      if (++bundle.effort > push.most_effort) return false;
       visit_node(beam, cone, current);
       current = next_child_subgroup(visit);
     }
-    while (todo != 0u && waiting_has_room()) test_vector();
-    if (todo != 0u || current == CHILD_EMPTY) settle_waiting();
+    while (bundle.todo != 0u && waiting_has_room()) test_vector();
+    if (bundle.todo != 0u || current == CHILD_EMPTY) settle_waiting();
     beam.farthest = farthest_hit();
     if (!(beam.farthest > -INFINITY)) {  // every shadow ray is blocked
       current = CHILD_EMPTY;
-      todo = 0u;
+      bundle.todo = 0u;
     }
   }
   return true;
 }
 
 void main() {
-  uint rays_here = counters[COUNT_RAYS + push.kind], bundle = global_group();
-  first_ray = bundle * BUNDLE_RAYS;
-  if (first_ray >= rays_here) return;
-  lane = gl_SubgroupInvocationID;
-  ray_count = min(BUNDLE_RAYS, rays_here - first_ray);
+  uint rays_here = counters[COUNT_RAYS + push.kind], number = global_group(), first = number * BUNDLE_RAYS;
+  if (first >= rays_here) return;
+  begin_bundle(ray_list, first, min(BUNDLE_RAYS, rays_here - first));
   Beam beam = load_bundle();
-  RayNode node = bundle_bound(spread);
-  bool incoherent = ray_count < 8u || is_incoherent(node, spread, push.widest);
+  RayNode node = bundle_bound(bundle.spread);
+  bool incoherent = bundle.ray_count < 8u || is_incoherent(node, bundle.spread, push.widest);
   visit = Visit(0u, 0u, octant_of(node.axis));
   if (!incoherent && walk(beam, cone_of(node))) {
-    [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
-  } else if (lane == 0u) {
-    fall_back_to_single_rays(bundle);  // what it found is found again
+    [[dont_unroll]] for (uint v = 0u; v < bundle.vectors; ++v) store(v);
+  } else if (bundle.lane == 0u) {
+    fall_back_to_single_rays(number);  // what it found is found again
   }
-  count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
-  count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
-  count_tests(push.kind, STAT_RAY_BOX, box_tests);
-  count_tests(push.kind, STAT_RAY_TRIANGLE, triangle_tests);
+  count_tests(push.kind, STAT_NODE_OBJECT, bundle.node_tests);
+  count_tests(push.kind, STAT_LEVELS + 3u, bundle.node_tests);
+  count_tests(push.kind, STAT_RAY_BOX, bundle.box_tests);
+  count_tests(push.kind, STAT_RAY_TRIANGLE, bundle.triangle_tests);
 }

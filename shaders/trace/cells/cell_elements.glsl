@@ -2,6 +2,10 @@
 // What is scanned for `frustum` and `classify`: see scan_elements.glsl.
 #ifndef SHEAF_CELL_ELEMENTS_GLSL
 #define SHEAF_CELL_ELEMENTS_GLSL
+#include "lib/common.glsl"
+#include "interface/hierarchy.h"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/args.glsl"
@@ -19,7 +23,7 @@ void give_up() {
 // Neighbours with equal keys, BUNDLE at most → packets (S: packet ranges).
 BUFFER(ROLE_PACKET_KEYS, readonly, uint, packet_keys);
 BUFFER(ROLE_PACKETS, writeonly, uvec2, packets);  // first ray, cell; the end of the list follows the last
-layout(push_constant) uniform Push { uint kind; } push;
+PUSH(KindPush);
 uint scan_count() { return counters[COUNT_RAYS + push.kind]; }
 uint scan_load(uint i) { return i % BUNDLE == 0u || packet_keys[i] != packet_keys[i - 1u] ? 1u : 0u; }
 void scan_store(uint i, uint before, uint own) {
@@ -37,11 +41,7 @@ void scan_total(uint total) {
 #include "lib/convert.glsl"
 BUFFER(ROLE_PAIRS, coherent, uvec2, pairs);
 BUFFER(ROLE_SURVIVORS, readonly, uint, entered);
-layout(push_constant) uniform Push {
-  uint half_read;
-  uint room;
-  uint always;  // 1: the other half is written also where no pair has a node
-} push;
+PUSH(OpenScanPush);
 uint scan_count() { return counters[COUNT_PAIR_HALVES + push.half_read]; }
 uint scan_load(uint i) { return bitCount(entered[i] & (PAIR_KEPT | 255u)); }
 void scan_store(uint i, uint before, uint own) {
@@ -82,11 +82,7 @@ BUFFER(ROLE_RAY_CELLS, coherent, uint, ray_cells);
 BUFFER(ROLE_CELLS, readonly, uvec2, cells);            // above: first ray, cell above that
 BUFFER(ROLE_CELL_STOPS, readonly, uint, cell_stops);
 BUFFER(ROLE_CELLS_NEXT, writeonly, uvec2, cells_next);
-layout(push_constant) uniform Push {
-  uint halvings;  // this division's and those before
-  uint first;     // 1: one cell above holds all rays
-  uint room;
-} push;
+PUSH(DivideScanPush);
 uint cell_above(uint ray) { return push.first != 0u ? 0u : ray_cells[ray]; }
 uint scan_count() { return counters[COUNT_WALK_RAYS]; }
 uint scan_load(uint i) {
@@ -120,11 +116,7 @@ void scan_total(uint total) {
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);            // of the cells above
 BUFFER(ROLE_CELLS_NEXT, readonly, uvec2, cells_next);
 BUFFER(ROLE_CELL_OFFSETS, writeonly, uint, cell_offsets);
-layout(push_constant) uniform Push {
-  uint half_read;
-  uint room;
-  uint root;   // 1: the root alone
-} push;
+PUSH(CandidatesScanPush);
 uint scan_count() { return counters[COUNT_WALK_CELLS]; }
 uint scan_load(uint i) {
   uvec2 list = lists[cells_next[i].y];

@@ -16,6 +16,8 @@
 // which covers e, limits rounded (2) and the quotient for z.
 #ifndef SHEAF_FRUSTUM_GLSL
 #define SHEAF_FRUSTUM_GLSL
+#include "lib/common.glsl"
+#include "scene/triangle.glsl"
 
 const float FRUSTUM_PAD = 3.8146973e-6;  // 2^-18
 

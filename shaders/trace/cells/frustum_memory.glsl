@@ -3,6 +3,8 @@
 // nothing, side, reciprocal.
 #ifndef SHEAF_FRUSTUM_MEMORY_GLSL
 #define SHEAF_FRUSTUM_MEMORY_GLSL
+#include "interface/hierarchy.h"
+#include "lib/common.glsl"
 #include "trace/cells/frustum.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer FrustumPairs { uint64_t pair[FRUSTUM_WORDS / 2]; };
 

@@ -8,7 +8,8 @@
 // Exact: a leaf is left out by the slabs of beam.glsl alone.
 #define COMPUTE
 #include "lib/common.glsl"
-#extension GL_EXT_control_flow_attributes : require
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "trace/common/candidate.glsl"
@@ -21,13 +22,8 @@ BUFFER(ROLE_PACKETS, readonly, uvec2, packets);
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 BUFFER(ROLE_PAIR_LEVELS, coherent, uint, pair_levels);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint room;   // pairs of a half
-  uint level;  // past the object hierarchy's
-  PUSH_LIST
-} push;
-#include "trace/bundles/bundle_rays.glsl"
+PUSH(IntersectPacketsPush);
+#include "trace/bundles/bundle_leaves.glsl"
 
 const uint LEAVES = LANES < 32u ? LANES : 32u;  // looked at together
 
@@ -47,17 +43,17 @@ uint place_child(uint place) {
 
 void test_list(Beam beam, uvec2 list) {
   for (uint base = list.x; base < list.y && beam.farthest > -INFINITY; base += LEAVES) {
-    uint mine = base + min(lane, LEAVES - 1u);
+    uint mine = base + min(bundle.lane, LEAVES - 1u);
     uint place = pairs[min(mine, list.y - 1u)].y & ~CHILD_LEAF;
     vec3 lo, hi;
     place_box(place, lo, hi);
-    lower_leaf = Leaf(lo, hi, place_child(place));
-    bool is_active = lane < LEAVES && mine < list.y;
-    if (is_active) ++node_tests;
+    bundle.lower_leaf = Leaf(lo, hi, place_child(place));
+    bool is_active = bundle.lane < LEAVES && mine < list.y;
+    if (is_active) ++bundle.node_tests;
     uint entered = lanes_where(is_active && beam_enters(beam, lo, hi));
     if (entered == 0u) continue;
     hand_out_leaves(entered, 0u);
-    while (todo != 0u) {
+    while (bundle.todo != 0u) {
       if (!waiting_has_room()) settle_waiting();
       test_vector();
     }
@@ -70,17 +66,15 @@ void main() {
   if (global_group() >= counters[COUNT_WALK_CELLS]) return;
   uint packet = counters[COUNT_WALK_FIRST] + global_group();
   uvec2 own = packets[packet];
-  lane = gl_SubgroupInvocationID;
-  first_ray = own.x;
-  ray_count = packets[packet + 1u].x - own.x;
+  begin_bundle(ray_list, own.x, packets[packet + 1u].x - own.x);
   Beam beam = load_bundle();
   uvec2 list = lists[own.y - counters[COUNT_WALK_FIRST]];
   test_list(beam, list + counters[COUNT_PAIR_HALF] * push.room);
-  [[dont_unroll]] for (uint v = 0u; v < vectors; ++v) store(v);
-  uint sum = subgroupAdd(node_tests);
+  [[dont_unroll]] for (uint v = 0u; v < bundle.vectors; ++v) store(v);
+  uint sum = subgroupAdd(bundle.node_tests);
   if (subgroupElect() && sum != 0u) atomicAdd(pair_levels[push.level], sum);
-  count_tests(push.kind, STAT_NODE_OBJECT, node_tests);
-  count_tests(push.kind, STAT_LEVELS + 3u, node_tests);
-  count_tests(push.kind, STAT_RAY_BOX, box_tests);
-  count_tests(push.kind, STAT_RAY_TRIANGLE, triangle_tests);
+  count_tests(push.kind, STAT_NODE_OBJECT, bundle.node_tests);
+  count_tests(push.kind, STAT_LEVELS + 3u, bundle.node_tests);
+  count_tests(push.kind, STAT_RAY_BOX, bundle.box_tests);
+  count_tests(push.kind, STAT_RAY_TRIANGLE, bundle.triangle_tests);
 }

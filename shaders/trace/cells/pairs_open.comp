@@ -6,6 +6,8 @@
 // What is entered is marked, a bit a child; a scan makes the next level's pairs of it.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #extension GL_KHR_shader_subgroup_vote : require
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
@@ -17,15 +19,7 @@
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);        // cell; node, or CHILD_LEAF and node · 8 + slot
 BUFFER(ROLE_SURVIVORS, writeonly, uint, entered);
 BUFFER(ROLE_PAIR_LEVELS, coherent, uint, pair_levels);
-layout(push_constant) uniform Push {
-  uvec2 frustums;
-  uint kind;
-  uint half_read;
-  uint room;       // pairs of a half
-  uint level;      // of the object hierarchy, root 0
-  uint ray_level;  // of the cells, for the stats
-  uint leaves;     // 1: pairs with leaves are tested too
-} push;
+PUSH(PairsOpenPush);
 
 // Axes of the boxes in the frustum's order: once a node is cheaper than once a child.
 Boxes permute_boxes(Boxes b, uint axis) {

@@ -4,11 +4,13 @@
 // Pairs lie in the order of their cells: where each cell's begin and end.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 BUFFER(ROLE_LISTS, writeonly, uvec2, lists);
-layout(push_constant) uniform Push { uint room; } push;
+PUSH(PairsRangesPush);
 
 void main() {
   uint i = global_index(), half_read = counters[COUNT_PAIR_HALF], count = counters[COUNT_PAIR_HALVES + half_read];

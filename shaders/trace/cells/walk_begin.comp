@@ -4,14 +4,12 @@
 // A walk of some cells through the object hierarchy begins: as many pairs (cell, root) as cells, if there is room.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/args.glsl"
-layout(push_constant) uniform Push {
-  uint first;    // cell
-  uint most;     // cells
-  uint room;     // for cells
-} push;
+PUSH(WalkBeginPush);
 
 void main() {
   if (local_index() != 0u) return;

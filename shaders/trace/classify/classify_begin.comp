@@ -5,16 +5,14 @@
 // candidate.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/args.glsl"
 BUFFER(ROLE_CELLS, writeonly, uvec2, cells);       // first ray, cell above; the walk's end follows the last
 BUFFER(ROLE_CELL_STOPS, writeonly, uint, cell_stops);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint first;   // ray
-  uint most;    // rays
-} push;
+PUSH(ClassifyBeginPush);
 
 void main() {
   if (local_index() != 0u) return;

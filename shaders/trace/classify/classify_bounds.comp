@@ -6,19 +6,15 @@
 // bound moves.
 #define COMPUTE
 #include "lib/common.glsl"
-#extension GL_EXT_control_flow_attributes : require
+#include "interface/push/lists.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/curves.glsl"
 #include "trace/classify/classify.glsl"
-layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lib/lanes.glsl"
 BUFFER(ROLE_CLASS_BOUNDS, coherent, uint, class_bounds);  // ordered integers: five least, five greatest a face
-layout(push_constant) uniform Push {
-  uint kind;
-  uint reset;
-  PUSH_LIST
-} push;
+PUSH(BoundsPush);
 
 const uint NO_FACE = 6u;
 
@@ -52,7 +48,7 @@ void main() {
   }
   uint count = counters[COUNT_RAYS + push.kind], first = global_group() * GROUP, last = min(first + GROUP, count);
   [[dont_unroll]] for (uint base = first; base < last; base += LANES) {
-    Ray r = load_ray(push.rays, load_slot(push.order, min(base + lane, last - 1u)));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, min(base + lane, last - 1u)));
     bound_faces(base + lane < last, class_of(r.origin, r.direction));
   }
 }

@@ -5,16 +5,15 @@
 // cell; the next level of the walk tests them against its own beam.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_CELLS_NEXT, readonly, uvec2, cells);
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);               // of the cells above
 BUFFER(ROLE_CELL_OFFSETS, readonly, uint, cell_offsets);  // candidates before the cell's
 BUFFER(ROLE_PAIRS, coherent, uvec2, pairs);
-layout(push_constant) uniform Push {
-  uint room;
-  uint root;   // 1: there is no cell above, and the candidate is the root
-} push;
+PUSH(ClassifyCandidatesPush);
 
 void main() {
   uint cell = global_group();

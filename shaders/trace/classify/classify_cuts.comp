@@ -6,11 +6,14 @@
 // marked: such a cell stays whole, and so do all below it, while its candidates are few. Faces are always parted.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/hierarchy.h"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_KEYS, readonly, uint, keys);
 BUFFER(ROLE_CELL_CUTS, writeonly, uint, cuts);
-layout(push_constant) uniform Push { uint kind; } push;
+PUSH(KindPush);
 
 const uint CLASS_RAYS = 64u;  // a power of two
 const uint NEVER = CLASS_HALVINGS + 1u;

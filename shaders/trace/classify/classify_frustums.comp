@@ -6,21 +6,18 @@
 // had.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "scene/node.glsl"
 #include "scene/triangle.glsl"
 #include "trace/cells/frustum_memory.glsl"
 #include "scene/hierarchy_box.glsl"
-layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup, which is the workgroup
 #include "lib/lanes.glsl"
 BUFFER(ROLE_CELLS, readonly, uvec2, cells_above);
 BUFFER(ROLE_CELLS_NEXT, readonly, uvec2, cells);
-layout(push_constant) uniform Push {
-  uvec2 frustums;
-  uvec2 above;     // of the cells above; none have them in the first round
-  PUSH_LIST
-} push;
+PUSH(ClassifyFrustumsPush);
 
 vec4 min_lanes(vec4 v) { return vec4(min_lanes(v.xyz), min_lanes(v.w)); }
 vec4 max_lanes(vec4 v) { return vec4(max_lanes(v.xyz), max_lanes(v.w)); }
@@ -42,10 +39,10 @@ void main() {
   }
   vec3 lo, hi;
   hierarchy_box(lo, hi);
-  Ray leader = load_ray(push.rays, load_slot(push.order, first));
+  Ray leader = load_ray(ray_list.rays, load_slot(ray_list.order, first));
   Hull hull = begin_hull(leader.direction, lo, hi);
   for (uint k = first + lane; k < last; k += LANES) {
-    Ray r = load_ray(push.rays, load_slot(push.order, k));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, k));
     add_extent(hull, r.origin, r.direction, r.tmin, r.tmax);
   }
   hull.first = min_lanes(hull.first);
@@ -53,7 +50,7 @@ void main() {
   hull.largest = max_lanes(hull.largest);
   set_planes(hull);
   for (uint k = first + lane; k < last; k += LANES) {
-    Ray r = load_ray(push.rays, load_slot(push.order, k));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, k));
     add_places(hull, r.origin, r.direction);
   }
   bvec4 upper = bvec4(false, true, false, true);

@@ -9,7 +9,8 @@
 // halving anew.
 #define COMPUTE
 #include "lib/common.glsl"
-#extension GL_EXT_control_flow_attributes : require
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/curves.glsl"
@@ -19,11 +20,7 @@
 BUFFER(ROLE_KEYS, writeonly, uint, keys);
 BUFFER(ROLE_RAY_CELLS, coherent, uint, slot_keys);  // no ray has a cell yet
 BUFFER(ROLE_CLASS_BOUNDS, readonly, uint, class_bounds);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint sorted;
-  PUSH_LIST
-} push;
+PUSH(ClassifyKeysPush);
 
 uint key_of(Ray r) {
   Class c = class_of(r.origin, r.direction);
@@ -59,7 +56,7 @@ uint key_of(Ray r) {
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = load_slot(push.order, i);
-  if (push.sorted == 0u) slot_keys[slot] = key_of(load_ray(push.rays, slot));
+  uint slot = load_slot(ray_list.order, i);
+  if (push.sorted == 0u) slot_keys[slot] = key_of(load_ray(ray_list.rays, slot));
   keys[i] = slot_keys[slot];
 }

@@ -5,15 +5,15 @@
 // however few: those with more candidates than rays that keep together have (R 3.2: by candidates as well as by rays).
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/hierarchy.h"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 BUFFER(ROLE_LISTS, readonly, uvec2, lists);
 BUFFER(ROLE_PAIRS, readonly, uvec2, pairs);
 BUFFER(ROLE_CELL_STOPS, writeonly, uint, cell_stops);
-layout(push_constant) uniform Push {
-  uint room;
-  uint many;  // candidates: a cell with more is crowded
-} push;
+PUSH(ClassifyStopsPush);
 
 void main() {
   uint i = global_index();

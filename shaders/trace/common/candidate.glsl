@@ -3,6 +3,13 @@
 // shadow rays, light passes or does not. Every strategy's intersect goes through here.
 #ifndef SHEAF_CANDIDATE_GLSL
 #define SHEAF_CANDIDATE_GLSL
+#include "lib/common.glsl"
+#include "lib/frame.glsl"
+#include "scene/memory.glsl"
+#include "scene/scene.glsl"
+#include "scene/triangle.glsl"
+#include "interface/shading.h"
+#include "interface/scene.h"
 #include "scene/attributes.glsl"
 #include "scene/fresnel.glsl"
 #include "lib/unit.glsl"
@@ -10,6 +17,11 @@
 // MASKED: some material has an alpha mask. TRANSLUCENT: some surface lets light through, shadow rays sum optical depth.
 layout(constant_id = SPEC_MASKED) const bool MASKED = true;
 layout(constant_id = SPEC_TRANSLUCENT) const bool TRANSLUCENT = true;
+// For shadow rays, whose any hit will do.
+layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
+
+// Whether a hit may have to ask its material before it counts.
+bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
 
 struct Nearest {
   float t;

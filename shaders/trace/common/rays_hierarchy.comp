@@ -5,21 +5,18 @@
 // mean axis and largest angle, box centre and largest distance; tighter than three unions of pairs.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/hierarchy.h"
+#include "interface/push/trace.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "trace/common/ray_node.glsl"
 BUFFER(ROLE_RAY_NODES, coherent, float, ray_nodes);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint level;         // being made, 1 and up
-  uint first;         // word of this level's first node
-  uint first_below;   // word of the level below; unused for level 1
-  PUSH_LIST
-} push;
+PUSH(RaysHierarchyPush);
 
 RayNode child_node(uint i) {
   if (push.level == 1u) {
-    Ray r = load_ray(push.rays, load_slot(push.order, i));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, i));
     return RayNode(r.origin, 0.0, r.direction, 0.0, r.tmax);
   }
   return LOAD_RAY_NODE(ray_nodes, push.first_below + i * RAY_NODE_WORDS);

@@ -3,6 +3,9 @@
 // triangle; and the optical depth of shadow rays through surfaces that let light pass.
 #ifndef SHEAF_RESULTS_GLSL
 #define SHEAF_RESULTS_GLSL
+#include "lib/common.glsl"
+#include "lists/rays.glsl"
+#include "trace/common/candidate.glsl"
 BUFFER(ROLE_OPTICAL_DEPTH, coherent, int, optical_depth);  // 3 a slot
 
 uint64_t pack_hit(float t, uint triangle) {

@@ -3,12 +3,11 @@
 // level.
 #ifndef SHEAF_VISIT_GLSL
 #define SHEAF_VISIT_GLSL
+#include "trace/common/candidate.glsl"
+#include "scene/memory.glsl"
+#include "interface/hierarchy.h"
 #include "scene/node.glsl"
 #include "lib/convert.glsl"
-layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
-
-// Whether a hit may have to ask its material before it counts.
-bool asks_materials() { return ANY_HIT ? TRANSLUCENT : MASKED; }
 
 struct Visit {
   uint group;   // node · 256 + mask of its children still to visit, in visiting order

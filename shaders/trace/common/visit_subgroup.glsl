@@ -4,6 +4,11 @@
 // lane on a CPU device.
 #ifndef SHEAF_VISIT_SUBGROUP_GLSL
 #define SHEAF_VISIT_SUBGROUP_GLSL
+#include "lib/convert.glsl"
+#include "lib/lanes.glsl"
+#include "scene/memory.glsl"
+#include "scene/node.glsl"
+#include "trace/common/visit.glsl"
 const uint STACK_ROWS = (STACK_SIZE + LANES - 1u) / LANES;
 uint stack_row[STACK_ROWS];
 uvec2 children;  // second: the upper four, where there are but four lanes

@@ -4,6 +4,8 @@
 // Frustum creation (S, R 3.4): one a packet, and its first pair, with the root of the object hierarchy.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "scene/node.glsl"
@@ -11,10 +13,7 @@
 #include "trace/cells/frustum_memory.glsl"
 BUFFER(ROLE_PACKETS, readonly, uvec2, packets);  // first ray, cell; one more at the end
 BUFFER(ROLE_PAIRS, writeonly, uvec2, pairs);
-layout(push_constant) uniform Push {
-  uvec2 frustums;
-  PUSH_LIST
-} push;
+PUSH(PacketsFrustumsPush);
 #include "scene/hierarchy_box.glsl"
 
 void main() {
@@ -23,15 +22,15 @@ void main() {
   uint packet = counters[COUNT_WALK_FIRST] + i, first = packets[packet].x, last = packets[packet + 1u].x;
   vec3 lo, hi;
   hierarchy_box(lo, hi);
-  Ray leader = load_ray(push.rays, load_slot(push.order, first));
+  Ray leader = load_ray(ray_list.rays, load_slot(ray_list.order, first));
   Hull hull = begin_hull(leader.direction, lo, hi);
   for (uint k = first; k < last; ++k) {
-    Ray r = load_ray(push.rays, load_slot(push.order, k));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, k));
     add_extent(hull, r.origin, r.direction, r.tmin, r.tmax);
   }
   set_planes(hull);
   for (uint k = first; k < last; ++k) {
-    Ray r = load_ray(push.rays, load_slot(push.order, k));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, k));
     add_places(hull, r.origin, r.direction);
   }
   store_frustum(push.frustums, i, end_hull(hull, octant_of(leader.direction)));

@@ -7,17 +7,15 @@
 // three tested 6000 nodes a ray.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/cells.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "scene/triangle.glsl"
 #include "trace/cells/frustum.glsl"
 BUFFER(ROLE_KEYS, readonly, uint, keys);
 BUFFER(ROLE_PACKET_KEYS, writeonly, uint, packet_keys);
-layout(push_constant) uniform Push {
-  uint kind;
-  uint dropped;  // bits of the hash; 32: no hash
-  PUSH_LIST
-} push;
+PUSH(PacketsKeysPush);
 
 // Directions' cells along an edge of the cube of them: of a sixteenth and a quarter of a radian. Shadow rays of a
 // packet begin at one lamp.
@@ -26,7 +24,7 @@ const uint CELLS = 32u, SHADOW_CELLS = 8u;
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  vec3 d = load_ray(push.rays, load_slot(push.order, i)).direction;
+  vec3 d = load_ray(ray_list.rays, load_slot(ray_list.order, i)).direction;
   uint leading = push.dropped < 32u ? keys[i] >> push.dropped : 0u;
   uint face = face_of(d);
   vec3 along = permute(d, face / 2u);

@@ -6,6 +6,9 @@
 // opened into its node's ARITY children or its part's triangles. Survivors are marked; compaction follows.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/hierarchy.h"
+#include "interface/push/trace.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "lib/counters.glsl"
 #include "lib/counting.glsl"
@@ -14,20 +17,10 @@ BUFFER(ROLE_RAY_NODES, readonly, float, ray_nodes);
 BUFFER(ROLE_PAIRS, writeonly, uvec2, candidates);
 BUFFER(ROLE_SURVIVORS, writeonly, uint, survivors);
 BUFFER(ROLE_PAIRS_NEXT, readonly, uvec2, parents);     // survivors of the step before
-BUFFER(ROLE_SKELETON, readonly, uvec4, seeds);         // node, first object, candidates before, unused
+BUFFER(ROLE_SEEDS, readonly, uvec4, seeds);         // node, first object, candidates before, unused
 BUFFER(ROLE_SPHERES, readonly, vec4, spheres);         // of instances, of parts or of triangles
 BUFFER(ROLE_RUNS, readonly, uvec2, parts);             // first triangle, how many
-layout(push_constant) uniform Push {
-  uint kind;
-  uint level;        // of the nodes being tested; 0: rays
-  uint first_word;   // of this level's nodes
-  uint nodes;        // on this level
-  uint candidates;   // in this batch
-  uint offset;       // first parent, or first candidate among the seeds
-  uint seeds;        // not 0: so many seeds
-  uint opens_parts;  // 1: parents are opened into triangles, not into the nodes below
-  PUSH_LIST
-} push;
+PUSH(TraversePairsPush);
 
 uvec2 seeded(uint i) {  // the seed whose run holds candidate i
   uint lo = 0u, hi = push.seeds - 1u;
@@ -43,7 +36,7 @@ uvec2 seeded(uint i) {  // the seed whose run holds candidate i
 
 RayNode node_at(uint i) {
   if (push.level == 0u) {
-    Ray r = load_ray(push.rays, load_slot(push.order, i));
+    Ray r = load_ray(ray_list.rays, load_slot(ray_list.order, i));
     return RayNode(r.origin, 0.0, r.direction, 0.0, r.tmax);
   }
   return LOAD_RAY_NODE(ray_nodes, push.first_word + i * RAY_NODE_WORDS);
@@ -77,5 +70,5 @@ void main() {
   count_tests(push.kind, STAT_NODE_OBJECT, exists ? 1u : 0u);
   count_tests(push.kind, STAT_LEVELS + min(push.level, MAX_LEVELS - 1u), exists ? 1u : 0u);
   if (PIXEL_COUNTED && exists && push.level == 0u)
-    count_pixel(load_ray_pixel(push.rays, load_slot(push.order, pair.x)), 1u);
+    count_pixel(load_ray_pixel(ray_list.rays, load_slot(ray_list.order, pair.x)), 1u);
 }

@@ -6,6 +6,8 @@
 // The driver's triangle test would not give the same bytes: its edge rule and its t are its own.
 #define COMPUTE
 #include "lib/common.glsl"
+#include "interface/push/push.h"
+#include "lib/push.glsl"
 #include "lists/rays.glsl"
 #include "scene/scene.glsl"
 #include "trace/common/candidate.glsl"
@@ -13,17 +15,13 @@
 #include "lib/counters.glsl"
 #include "lib/counting.glsl"
 layout(set = 0, binding = ROLE_STRUCTURE) uniform accelerationStructureEXT structure;
-layout(constant_id = SPEC_ANY_HIT) const bool ANY_HIT = false;
-layout(push_constant) uniform Push {
-  uint kind;
-  PUSH_LIST
-} push;
+PUSH(KindPush);
 
 void main() {
   uint i = global_index();
   if (i >= counters[COUNT_RAYS + push.kind]) return;
-  uint slot = load_slot(push.order, i);
-  Ray ray = load_ray(push.rays, slot);
+  uint slot = load_slot(ray_list.order, i);
+  Ray ray = load_ray(ray_list.rays, slot);
   Shear s = make_shear(ray.origin, ray.direction);
   Nearest best = Nearest(ray.tmax, NO_INDEX);
   Shade shade = Shade(false, NO_INDEX, 0.0, ivec3(0));
@@ -53,9 +51,9 @@ void main() {
     }
   }
   if (ANY_HIT)
-    store_shade(push.hits, slot, shade);
+    store_shade(ray_list.hits, slot, shade);
   else
-    store_nearest(push.hits, slot, best);
+    store_nearest(ray_list.hits, slot, best);
   count_tests(push.kind, STAT_RAY_TRIANGLE, tests);
-  count_pixel(load_ray_pixel(push.rays, slot), tests);
+  count_pixel(load_ray_pixel(ray_list.rays, slot), tests);
 }

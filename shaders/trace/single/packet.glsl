@@ -7,6 +7,10 @@
 // farthest hit of −∞.
 #ifndef SHEAF_PACKET_GLSL
 #define SHEAF_PACKET_GLSL
+#include "lists/rays.glsl"
+#include "scene/node_boxes.glsl"
+#include "trace/common/candidate.glsl"
+#include "trace/single/walk.glsl"
 #include "lib/lanes.glsl"
 #include "trace/common/visit_subgroup.glsl"
 #include "scene/load_uniform.glsl"

@@ -6,21 +6,12 @@
 // a node's children are tested as straight-line code.
 #ifndef SHEAF_SINGLE_RAY_GLSL
 #define SHEAF_SINGLE_RAY_GLSL
+#include "trace/single/walk.glsl"
+#include "lists/rays.glsl"
+#include "scene/triangle.glsl"
+#include "trace/common/candidate.glsl"
 #include "trace/common/visit.glsl"
 #include "scene/node_boxes.glsl"
-
-struct Tests {
-  uint boxes;
-  uint triangles;
-};
-
-// In place of a child: take the next from the stack (no leaf reads so: it would end past 2^27).
-const uint NEXT = 0xFFFFFFFEu;
-
-struct Walk {
-  uint current;  // a node, the rest of a leaf, NEXT, or CHILD_EMPTY: done
-  Visit visit;
-};
 
 bool is_rest_of_leaf(uint child) { return !is_node(child) && child < NEXT; }
 
@@ -67,7 +58,6 @@ void walk_on(Ray ray, Shear s, inout Walk w, inout Nearest best, inout Shade sha
 }
 
 #ifdef PACKETS  // not a constant: what is never run would still be read and inlined at each start
-layout(constant_id = SPEC_LANES) const uint LANES = 8;  // of a subgroup
 #include "trace/single/packet.glsl"
 #endif
 
