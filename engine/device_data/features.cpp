@@ -55,9 +55,7 @@ void add_material(const Scene& scene, std::uint32_t index, const RenderSettings&
   features.one_sided |= hides_back(settings, material);
   features.emissive |= material.emissive != glm::vec3(0);
   features.normal_mapped |= material.normal_texture.present();
-  for (const auto* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-                          &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture})
-    features.textured |= use->present();
+  for_each_texture(material, [&](const TextureUse& use, auto...) { features.textured |= use.present(); });
 }
 
 }  // namespace

@@ -86,23 +86,18 @@ std::uint32_t flags_of(const Material& material, const RenderSettings& settings)
 
 gpu::Material lay_out_material(const Scene& scene, Images& images, const Material& m, const RenderSettings& settings) {
   gpu::Material g{};
-  g.base_color = m.base_color;
-  g.emissive = m.emissive;
-  g.metallic = m.metallic;
-  g.roughness = m.roughness;
-  g.alpha_cutoff = m.alpha_cutoff;
-  g.transmission = settings.opaque || m.unlit ? 0 : m.transmission;
-  g.ior = m.ior;
+#define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) g.field = m.field;
+  MATERIAL_FACTORS(SHEAF_FACTOR)
+#undef SHEAF_FACTOR
+  if (settings.opaque || m.unlit) g.transmission = 0;
   g.absorption = absorption(m);
   g.flags = flags_of(m, settings);
   const bool see_through = m.alpha_mode != AlphaMode::opaque && !settings.opaque;
   const auto base = see_through ? MipContent::color_by_alpha : MipContent::color;
-  g.uses[gpu::TEXTURE_BASE_COLOR] = lay_out_use(scene, images, m.base_color_texture, base);
-  g.uses[gpu::TEXTURE_METALLIC_ROUGHNESS] = lay_out_use(scene, images, m.metallic_roughness_texture, MipContent::data);
-  g.uses[gpu::TEXTURE_NORMAL] = lay_out_use(scene, images, m.normal_texture, MipContent::data);
-  g.uses[gpu::TEXTURE_OCCLUSION] = lay_out_use(scene, images, m.occlusion_texture, MipContent::data);
-  g.uses[gpu::TEXTURE_EMISSIVE] = lay_out_use(scene, images, m.emissive_texture, MipContent::color);
-  g.uses[gpu::TEXTURE_TRANSMISSION] = lay_out_use(scene, images, m.transmission_texture, MipContent::data);
+  for_each_texture(m, [&](const TextureUse& use, std::uint32_t place, std::uint32_t content) {
+    const auto kind = content == CONTENT_COLOR ? MipContent::color : MipContent::data;
+    g.uses[place] = lay_out_use(scene, images, use, place == gpu::TEXTURE_BASE_COLOR ? base : kind);
+  });
   return g;
 }
 

@@ -46,11 +46,10 @@ UvFootprint transformed(const TextureUse& use, const UvFootprint& f) {
 
 Textures::Textures(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {
   for (const Material& m : scene.materials) {
-    prepare(m.base_color_texture, base_kind(m));
-    prepare(m.emissive_texture, TexelKind::color);
-    for (const auto* use :
-         {&m.metallic_roughness_texture, &m.normal_texture, &m.occlusion_texture, &m.transmission_texture})
-      prepare(*use, TexelKind::number);
+    for_each_texture(m, [&](const TextureUse& use, auto, std::uint32_t content) {
+      const bool base = &use == &m.base_color_texture;
+      prepare(use, base ? base_kind(m) : content == CONTENT_COLOR ? TexelKind::color : TexelKind::number);
+    });
   }
 }
 

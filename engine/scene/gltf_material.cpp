@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "scene/gltf_image.hpp"
 
@@ -32,8 +33,8 @@ class MaterialReader {
     file_.require("materials", index);
     Material out;
     out.name = source.name;
-    read_metallic_roughness(source, object, out);
-    read_surface(source, object, out);
+    read_table(object, out);
+    read_surface(source, out);
     read_extensions(object, out);
     return out;
   }
@@ -42,32 +43,57 @@ class MaterialReader {
   void decode_used_images() { scene_.images = decode_images(file_, image_order_); }
 
  private:
-  void read_metallic_roughness(const tinygltf::Material& source, const json& object, Material& out) {
-    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    const std::string place = place_ + ".pbrMetallicRoughness";
-    for (int c = 0; c < 4; ++c) {
-      out.base_color[c] =
-          clamped(file_, place + ".baseColorFactor", pbr.baseColorFactor[static_cast<std::size_t>(c)], 0, 1);
-    }
-    out.metallic = clamped(file_, place + ".metallicFactor", pbr.metallicFactor, 0, 1);
-    out.roughness = clamped(file_, place + ".roughnessFactor", pbr.roughnessFactor, 0, 1);
-    if (const json* at_pbr = member(object, "pbrMetallicRoughness")) {
-      out.base_color_texture = texture_use(*at_pbr, "baseColorTexture");
-      out.metallic_roughness_texture = texture_use(*at_pbr, "metallicRoughnessTexture");
-    }
+  // The object that a line of the table names as its owner; null where the file has none.
+  static const json* owner_of(const json& material, std::string_view owner) {
+    if (owner == "material") return &material;
+    if (owner == pbr_) return member(material, pbr_);
+    return extension(material, owner.data());
   }
 
-  void read_surface(const tinygltf::Material& source, const json& object, Material& out) {
-    out.normal_texture = texture_use(object, "normalTexture");
+  // "materials[3]" of its own and its extensions' properties.
+  [[nodiscard]] std::string place_of(std::string_view owner, const char* key) const {
+    return place_ + (owner == pbr_ ? std::string(".") + pbr_ : "") + "." + key;
+  }
+
+  // Parameters and textures as the table has them; what a file does not give keeps its default.
+  void read_table(const json& object, Material& out) {
+#define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) \
+  read_factor(object, #owner, #key, {low, high}, out.field);
+#define SHEAF_TEXTURE(number, place, field, owner, key, content) \
+  if (const json* from = owner_of(object, #owner)) out.field = texture_use(*from, #key);
+    MATERIAL_FACTORS(SHEAF_FACTOR)
+    MATERIAL_TEXTURES(SHEAF_TEXTURE)
+#undef SHEAF_FACTOR
+#undef SHEAF_TEXTURE
+  }
+
+  struct Range {
+    double low, high;
+  };
+
+  void read_factor(const json& object, std::string_view owner, const char* key, Range range, float& out) {
+    const json* from = owner_of(object, owner);
+    const json* value = from != nullptr ? member(*from, key) : nullptr;
+    if (value != nullptr) out = clamped(file_, place_of(owner, key), meant(key, value->get<double>()), range.low, range.high);
+  }
+
+  template <int N>
+  void read_factor(const json& object, std::string_view owner, const char* key, Range range, glm::vec<N, float>& out) {
+    const json* from = owner_of(object, owner);
+    const json* value = from != nullptr ? member(*from, key) : nullptr;
+    if (value == nullptr) return;
+    for (int c = 0; c < N; ++c)
+      out[c] = clamped(file_, place_of(owner, key), (*value)[static_cast<std::size_t>(c)].template get<double>(), range.low, range.high);
+  }
+
+  // KHR_materials_ior gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 %
+  // of that (F0 = (999 / 1001)^2) and keeps every formula finite.
+  static double meant(std::string_view key, double value) { return key == "ior" && value == 0 ? 1000 : value; }
+
+  void read_surface(const tinygltf::Material& source, Material& out) {
     out.normal_texture.strength = static_cast<float>(source.normalTexture.scale);
-    out.occlusion_texture = texture_use(object, "occlusionTexture");
     out.occlusion_texture.strength =
         clamped(file_, place_ + ".occlusionTexture.strength", source.occlusionTexture.strength, 0, 1);
-    out.emissive_texture = texture_use(object, "emissiveTexture");
-    for (int c = 0; c < 3; ++c) {
-      out.emissive[c] =
-          clamped(file_, place_ + ".emissiveFactor", source.emissiveFactor[static_cast<std::size_t>(c)], 0, 1);
-    }
     if (source.alphaMode == "MASK") {
       out.alpha_mode = AlphaMode::mask;
     } else if (source.alphaMode == "BLEND") {
@@ -75,7 +101,6 @@ class MaterialReader {
     } else if (source.alphaMode != "OPAQUE") {
       file_.fail(place_ + ".alphaMode", in_quotes(source.alphaMode) + " is not OPAQUE, MASK or BLEND");
     }
-    out.alpha_cutoff = clamped(file_, place_ + ".alphaCutoff", source.alphaCutoff, 0, any_);
     out.double_sided = source.doubleSided;
   }
 
@@ -88,20 +113,7 @@ class MaterialReader {
       if (!std::isfinite(out.emissive.x + out.emissive.y + out.emissive.z))
         file_.fail(place_ + ".emissiveStrength", "is too large");
     }
-    if (const json* e = extension(object, "KHR_materials_transmission")) {
-      out.transmission = clamped(file_, place_ + ".transmissionFactor", number_or(*e, "transmissionFactor", 0), 0, 1);
-      out.transmission_texture = texture_use(*e, "transmissionTexture");
-    }
-    if (const json* e = extension(object, "KHR_materials_ior")) read_ior(*e, out);
     if (const json* e = extension(object, "KHR_materials_volume")) read_volume(*e, out);
-  }
-
-  void read_ior(const json& e, Material& out) {
-    const double ior = number_or(e, "ior", 1.5);
-    // The extension gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 % of
-    // that (F0 = (999 / 1001)^2) and keeps every formula finite.
-    constexpr double mirror_like = 1000;
-    out.ior = ior == 0 ? static_cast<float>(mirror_like) : clamped(file_, place_ + ".ior", ior, 1, mirror_like);
   }
 
   void read_volume(const json& e, Material& out) {
@@ -188,6 +200,7 @@ class MaterialReader {
         sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
   }
 
+  static constexpr const char* pbr_ = "pbrMetallicRoughness";
   static constexpr double any_ = std::numeric_limits<float>::max();
   GltfFile& file_;
   Scene& scene_;

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scene/gltf_schema_rules.hpp"
 
+#include <algorithm>
+#include <string_view>
+
+#include "interface/material_table.h"
+
 namespace sheaf {
 namespace {
 
@@ -144,59 +149,70 @@ std::vector<SchemaGroup> object_rules() {
   };
 }
 
+// Where the table of materials has its owners: "materials[]", what it holds, and its extensions.
+std::string path_of(const std::string& owner) {
+  if (owner == "material") return "materials[]";
+  return (owner == "pbrMetallicRoughness" ? "materials[]." : "materials[].extensions.") + owner;
+}
+
+void add_rule(std::vector<SchemaGroup>& groups, const std::string& owner, const SchemaRule& rule) {
+  auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.owner == owner; });
+  if (found == groups.end()) found = groups.insert(found, {owner, {}});
+  const std::string_view key = rule.key;
+  if (std::none_of(found->rules.begin(), found->rules.end(), [&](const auto& known) { return known.key == key; }))
+    found->rules.push_back(rule);
+}
+
+void add_texture_rules(std::vector<SchemaGroup>& groups, const std::string& owner) {
+  groups.push_back({owner,
+                    {{"index", JsonKind::index, "textures", -any, any, 0, true},
+                     {"texCoord", JsonKind::integer, "", 0, max_int},
+                     {"scale", JsonKind::number},
+                     {"strength", JsonKind::number},
+                     {"extensions", JsonKind::object}}});
+  groups.push_back({owner + ".extensions", {{"KHR_texture_transform", JsonKind::object}}});
+  groups.push_back({owner + ".extensions.KHR_texture_transform",
+                    {{"offset", JsonKind::numbers, "", -any, any, 2},
+                     {"scale", JsonKind::numbers, "", -any, any, 2},
+                     {"rotation", JsonKind::number},
+                     {"texCoord", JsonKind::integer, "", 0, max_int}}});
+}
+
+// What the table does not have, and for each of its lines a rule.
 std::vector<SchemaGroup> material_rules() {
   std::vector<SchemaGroup> groups = {
       {"materials[]",
        {{"name", JsonKind::text},
         {"pbrMetallicRoughness", JsonKind::object},
-        {"normalTexture", JsonKind::object},
-        {"occlusionTexture", JsonKind::object},
-        {"emissiveTexture", JsonKind::object},
-        {"emissiveFactor", JsonKind::numbers, "", -any, any, 3},
         {"alphaMode", JsonKind::text},
-        {"alphaCutoff", JsonKind::number},
         {"doubleSided", JsonKind::boolean},
         {"extensions", JsonKind::object}}},
-      {"materials[].pbrMetallicRoughness",
-       {{"baseColorFactor", JsonKind::numbers, "", -any, any, 4},
-        {"baseColorTexture", JsonKind::object},
-        {"metallicFactor", JsonKind::number},
-        {"roughnessFactor", JsonKind::number},
-        {"metallicRoughnessTexture", JsonKind::object}}},
       {"materials[].extensions",
        {{"KHR_materials_emissive_strength", JsonKind::object},
         {"KHR_materials_unlit", JsonKind::object},
-        {"KHR_materials_transmission", JsonKind::object},
-        {"KHR_materials_ior", JsonKind::object},
         {"KHR_materials_volume", JsonKind::object}}},
       {"materials[].extensions.KHR_materials_emissive_strength", {{"emissiveStrength", JsonKind::number}}},
-      {"materials[].extensions.KHR_materials_transmission",
-       {{"transmissionFactor", JsonKind::number}, {"transmissionTexture", JsonKind::object}}},
-      {"materials[].extensions.KHR_materials_ior", {{"ior", JsonKind::number}}},
       {"materials[].extensions.KHR_materials_volume",
        {{"thicknessFactor", JsonKind::number},
         {"thicknessTexture", JsonKind::object},
         {"attenuationDistance", JsonKind::number},
         {"attenuationColor", JsonKind::numbers, "", -any, any, 3}}},
   };
-  for (const char* slot :
-       {"pbrMetallicRoughness.baseColorTexture", "pbrMetallicRoughness.metallicRoughnessTexture", "normalTexture",
-        "occlusionTexture", "emissiveTexture", "extensions.KHR_materials_transmission.transmissionTexture",
-        "extensions.KHR_materials_volume.thicknessTexture"}) {
-    const std::string owner = std::string("materials[].") + slot;
-    groups.push_back({owner,
-                      {{"index", JsonKind::index, "textures", -any, any, 0, true},
-                       {"texCoord", JsonKind::integer, "", 0, max_int},
-                       {"scale", JsonKind::number},
-                       {"strength", JsonKind::number},
-                       {"extensions", JsonKind::object}}});
-    groups.push_back({owner + ".extensions", {{"KHR_texture_transform", JsonKind::object}}});
-    groups.push_back({owner + ".extensions.KHR_texture_transform",
-                      {{"offset", JsonKind::numbers, "", -any, any, 2},
-                       {"scale", JsonKind::numbers, "", -any, any, 2},
-                       {"rotation", JsonKind::number},
-                       {"texCoord", JsonKind::integer, "", 0, max_int}}});
-  }
+  const auto add = [&](const std::string& owner, const char* name, const SchemaRule& rule) {
+    if (owner.starts_with("KHR_")) add_rule(groups, "materials[].extensions", {name, JsonKind::object});
+    add_rule(groups, path_of(owner), rule);
+  };
+#define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) \
+  add(#owner, #owner, {#key, (words) == 1 ? JsonKind::number : JsonKind::numbers, "", -any, any, (words) == 1 ? 0 : int{words}});
+#define SHEAF_TEXTURE(number, place, field, owner, key, content) add(#owner, #owner, {#key, JsonKind::object});
+  MATERIAL_FACTORS(SHEAF_FACTOR)
+  MATERIAL_TEXTURES(SHEAF_TEXTURE)
+#undef SHEAF_FACTOR
+#undef SHEAF_TEXTURE
+#define SHEAF_TEXTURE(number, place, field, owner, key, content) add_texture_rules(groups, path_of(#owner) + "." #key);
+  MATERIAL_TEXTURES(SHEAF_TEXTURE)
+#undef SHEAF_TEXTURE
+  add_texture_rules(groups, "materials[].extensions.KHR_materials_volume.thicknessTexture");
   return groups;
 }
 

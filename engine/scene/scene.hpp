@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "interface/material_table.h"
+
 namespace sheaf {
 
 inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -43,20 +45,29 @@ enum class AlphaMode : std::uint32_t { opaque = 0, mask = 1, blend = 2 };
 
 struct Material {
   std::string name;
-  glm::vec4 base_color{1};
-  float metallic = 1, roughness = 1;
-  glm::vec3 emissive{0};  // strength multiplied in
-  float alpha_cutoff = 0.5f;
+  using vec3 = glm::vec3;
+  using vec4 = glm::vec4;
+  // As the table names them; the strength of what is emissive is multiplied in.
+#define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) type field{value};
+#define SHEAF_TEXTURE(number, place, field, owner, key, content) TextureUse field;
+  MATERIAL_FACTORS(SHEAF_FACTOR)
+  MATERIAL_TEXTURES(SHEAF_TEXTURE)
+#undef SHEAF_FACTOR
+#undef SHEAF_TEXTURE
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool double_sided = false, unlit = false;
-  float transmission = 0;
-  float ior = 1.5f;
   float thickness = 0;  // > 0: a closed volume that refracts and absorbs; 0: thin-walled
   glm::vec3 attenuation_color{1};
   float attenuation_distance = std::numeric_limits<float>::infinity();
-  TextureUse base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture,
-      transmission_texture;
 };
+
+/// f(use, place, content) of each texture that a material may have; `place` in gpu::Material::uses.
+template <typename AnyMaterial, typename Function>
+void for_each_texture(AnyMaterial&& material, Function&& f) {
+#define SHEAF_TEXTURE(number, place, field, owner, key, content) f(material.field, number, content);
+  MATERIAL_TEXTURES(SHEAF_TEXTURE)
+#undef SHEAF_TEXTURE
+}
 
 struct MorphTarget {  // deltas, one an attribute a vertex; an empty vector is all zero
   std::vector<glm::vec3> positions, normals, tangents;

@@ -79,9 +79,7 @@ std::vector<double> content_of(const Scene& scene, const Material& m, const Mesh
   content.insert(content.end(), {m.unlit ? 1.0 : 0.0, m.metallic, m.roughness, m.alpha_cutoff, m.transmission, m.ior,
                                  m.thickness, m.double_sided ? 1.0 : 0.0, m.attenuation_color.x, m.attenuation_color.y,
                                  m.attenuation_color.z, m.attenuation_distance});
-  for (const auto* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.occlusion_texture,
-                          &m.emissive_texture, &m.transmission_texture})
-    add_texture(content, scene, *use);
+  for_each_texture(m, [&](const TextureUse& use, auto...) { add_texture(content, scene, use); });
   content.push_back(shape_of(mesh));
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 3; ++r) content.push_back(world[c][r]);

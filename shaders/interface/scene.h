@@ -2,6 +2,7 @@
 // Materials, textures, instances and lights as the device has them.
 #ifndef SHEAF_INTERFACE_SCENE_H
 #define SHEAF_INTERFACE_SCENE_H
+#include "interface/material_table.h"
 #include "interface/types.h"
 SHEAF_INTERFACE_BEGIN
 
@@ -39,19 +40,24 @@ SHEAF_CONST TEXTURE_NEAREST = 16u;
 SHEAF_CONST TEXTURE_UV1 = 32u;
 SHEAF_CONST TEXTURE_HERE = 64u;
 
-// Places in Material::uses; what shadow rays ask comes first.
-SHEAF_CONST TEXTURE_BASE_COLOR = 0u;
-SHEAF_CONST TEXTURE_METALLIC_ROUGHNESS = 1u;
-SHEAF_CONST TEXTURE_TRANSMISSION = 2u;
-SHEAF_CONST TEXTURE_NORMAL = 3u;
-SHEAF_CONST TEXTURE_OCCLUSION = 4u;
-SHEAF_CONST TEXTURE_EMISSIVE = 5u;
-SHEAF_CONST TEXTURES = 6u;
+// Places in Material::uses, how many there are, and a bit for each that holds colours.
+#define PLACE(number, place, field, owner, key, content) SHEAF_CONST place = number;
+#define COUNT_ONE(number, place, field, owner, key, content) +1u
+#define COLOR_BIT(number, place, field, owner, key, content) | (content << number)
+MATERIAL_TEXTURES(PLACE)
+SHEAF_CONST TEXTURES = 0u MATERIAL_TEXTURES(COUNT_ONE);
+SHEAF_CONST COLOR_TEXTURES = 0u MATERIAL_TEXTURES(COLOR_BIT);
+#undef PLACE
+#undef COUNT_ONE
+#undef COLOR_BIT
 
 // Words of the structures below.
 SHEAF_CONST INSTANCE_WORDS = 34u;
 SHEAF_CONST USE_WORDS = 12u;
-SHEAF_CONST MATERIAL_USES = 18u;  // where they begin
+#define WORDS(type, words, field, value, owner, key, low, high) +words
+SHEAF_CONST FACTOR_WORDS = 0u MATERIAL_FACTORS(WORDS);
+#undef WORDS
+SHEAF_CONST MATERIAL_USES = FACTOR_WORDS + 6u;  // where they begin
 SHEAF_CONST MATERIAL_WORDS = MATERIAL_USES + TEXTURES * USE_WORDS;
 SHEAF_CONST LIGHT_PAIRS = 7u;
 
@@ -68,13 +74,9 @@ struct TextureUse {
 };
 
 struct Material {
-  vec4 base_color;
-  vec3 emissive;
-  float metallic;
-  float roughness;
-  float alpha_cutoff;
-  float transmission;
-  float ior;
+#define FIELD(type, words, field, value, owner, key, low, high) type field;
+  MATERIAL_FACTORS(FIELD)
+#undef FIELD
   vec3 absorption;  // −log2(attenuation color) / distance: stops a metre, at most ABSORBS_ALL
   uint flags;
   uint volume;      // 1 … 255 for volumes, else 0; volume n is material n − 1 of the buffer
@@ -121,7 +123,7 @@ SHEAF_INTERFACE_END
 
 #ifdef __cplusplus
 static_assert(sizeof(sheaf::gpu::TextureUse) == 4 * sheaf::gpu::USE_WORDS);
-static_assert(sizeof(sheaf::gpu::Material) == 4 * sheaf::gpu::MATERIAL_WORDS);
+static_assert(sizeof(sheaf::gpu::Material) == 4 * sheaf::gpu::MATERIAL_WORDS && sheaf::gpu::MATERIAL_USES % 2 == 0);
 static_assert(sizeof(sheaf::gpu::Instance) == 4 * sheaf::gpu::INSTANCE_WORDS);
 static_assert(sizeof(sheaf::gpu::Light) == 8 * sheaf::gpu::LIGHT_PAIRS);
 #endif

@@ -68,23 +68,27 @@ Instance unpack_instance(uvec2 p[INSTANCE_PAIRS]) {
                   p[14].x, p[14].y, p[15].x, p[15].y, p[16].x, p[16].y);
 }
 
+#define TAKE_float(to) to = uintBitsToFloat(word[at++])
+#define TAKE_vec3(to) to = uintBitsToFloat(uvec3(word[at], word[at + 1u], word[at + 2u])), at += 3u
+#define TAKE_vec4(to) to = uintBitsToFloat(uvec4(word[at], word[at + 1u], word[at + 2u], word[at + 3u])), at += 4u
+#define TAKE(type, words, field, value, owner, key, low, high) TAKE_##type(m.field);
+
 // Without its textures: see load_use.
 Material unpack_material(uvec2 p[MATERIAL_PAIRS]) {
+  uint word[MATERIAL_USES], at = 0u;
+  [[unroll]] for (uint k = 0u; k < MATERIAL_PAIRS; ++k) {
+    word[2u * k] = p[k].x;
+    word[2u * k + 1u] = p[k].y;
+  }
   Material m;
-  vec4 emissive = floats(p[2], p[3]), way = floats(p[4], p[5]), absorption = floats(p[6], p[7]);
-  m.base_color = floats(p[0], p[1]);
-  m.emissive = emissive.xyz;
-  m.metallic = emissive.w;
-  m.roughness = way.x;
-  m.alpha_cutoff = way.y;
-  m.transmission = way.z;
-  m.ior = way.w;
-  m.absorption = absorption.xyz;
-  m.flags = floatBitsToUint(absorption.w);
-  m.volume = p[8].x;
-  m.id = p[8].y;
+  MATERIAL_FACTORS(TAKE)
+  TAKE_vec3(m.absorption);
+  m.flags = word[at++];
+  m.volume = word[at++];
+  m.id = word[at];
   return m;
 }
+#undef TAKE
 
 TextureUse unpack_use(uvec2 p[USE_PAIRS]) {
   return TextureUse(floats(p[0]), floats(p[1]), floats(p[2]), floats(p[3]).x, p[3].y, p[4].x, p[4].y, p[5].x, p[5].y);

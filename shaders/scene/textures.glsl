@@ -107,7 +107,7 @@ vec4 sample_filtered(TextureUse t, UvFootprint f, bool srgb) {
   return sum / taps;
 }
 
-bool is_color(uint place) { return place == TEXTURE_BASE_COLOR || place == TEXTURE_EMISSIVE; }
+bool is_color(uint place) { return (COLOR_TEXTURES >> place & 1u) != 0u; }
 
 // The image itself, unfiltered: what decides whether and how a ray passes. White where the material has no such
 // texture.
