@@ -74,7 +74,8 @@ class MaterialReader {
   void read_factor(const json& object, std::string_view owner, const char* key, Range range, float& out) {
     const json* from = owner_of(object, owner);
     const json* value = from != nullptr ? member(*from, key) : nullptr;
-    if (value != nullptr) out = clamped(file_, place_of(owner, key), meant(key, value->get<double>()), range.low, range.high);
+    if (value != nullptr)
+      out = clamped(file_, place_of(owner, key), meant(key, value->get<double>()), range.low, range.high);
   }
 
   template <int N>
@@ -83,7 +84,8 @@ class MaterialReader {
     const json* value = from != nullptr ? member(*from, key) : nullptr;
     if (value == nullptr) return;
     for (int c = 0; c < N; ++c)
-      out[c] = clamped(file_, place_of(owner, key), (*value)[static_cast<std::size_t>(c)].template get<double>(), range.low, range.high);
+      out[c] = clamped(file_, place_of(owner, key), (*value)[static_cast<std::size_t>(c)].template get<double>(),
+                       range.low, range.high);
   }
 
   // KHR_materials_ior gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 %

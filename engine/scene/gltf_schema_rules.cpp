@@ -203,7 +203,8 @@ std::vector<SchemaGroup> material_rules() {
     add_rule(groups, path_of(owner), rule);
   };
 #define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) \
-  add(#owner, #owner, {#key, (words) == 1 ? JsonKind::number : JsonKind::numbers, "", -any, any, (words) == 1 ? 0 : int{words}});
+  add(#owner, #owner,                                                  \
+      {#key, (words) == 1 ? JsonKind::number : JsonKind::numbers, "", -any, any, (words) == 1 ? 0 : int{words}});
 #define SHEAF_TEXTURE(number, place, field, owner, key, content) add(#owner, #owner, {#key, JsonKind::object});
   MATERIAL_FACTORS(SHEAF_FACTOR)
   MATERIAL_TEXTURES(SHEAF_TEXTURE)
