@@ -23,6 +23,13 @@ class Hash {  // FNV-1a over 64-bit words
   std::uint64_t value_ = 0xCBF29CE484222325U;
 };
 
+void add_factor(std::vector<double>& to, float value) { to.push_back(value); }
+
+template <int N>
+void add_factor(std::vector<double>& to, const glm::vec<N, float>& value) {
+  for (int c = 0; c < N; ++c) to.push_back(value[c]);
+}
+
 void add_texture(std::vector<double>& to, const Scene& scene, const TextureUse& use) {
   to.push_back(use.present() ? 1 : 0);
   if (!use.present()) return;
@@ -76,8 +83,11 @@ std::vector<double> content_of(const Scene& scene, const Material& m, const Mesh
   for (int c = 0; c < 4; ++c)
     content.push_back(-double{m.base_color[c]});  // the brighter in red, then green, then blue
   for (int c = 0; c < 3; ++c) content.push_back(-double{m.emissive[c]});
-  content.insert(content.end(), {m.unlit ? 1.0 : 0.0, m.metallic, m.roughness, m.alpha_cutoff, m.transmission, m.ior,
-                                 m.thickness, m.double_sided ? 1.0 : 0.0, m.attenuation_color.x, m.attenuation_color.y,
+  content.push_back(m.unlit ? 1 : 0);
+#define SHEAF_FACTOR(type, words, field, value, owner, key, low, high) add_factor(content, m.field);
+  MATERIAL_FACTORS(SHEAF_FACTOR)
+#undef SHEAF_FACTOR
+  content.insert(content.end(), {m.thickness, m.double_sided ? 1.0 : 0.0, m.attenuation_color.x, m.attenuation_color.y,
                                  m.attenuation_color.z, m.attenuation_distance});
   for_each_texture(m, [&](const TextureUse& use, auto...) { add_texture(content, scene, use); });
   content.push_back(shape_of(mesh));
