@@ -17,28 +17,18 @@ constexpr double much = 1.5;  // rays, or cost of a ray, that changed by this fa
 
 }  // namespace
 
-double StrategyTrial::Side::per_ray() const {
-  double cost = 0, rays = 0;
+double StrategyTrial::Side::ratio(double BatchTaken::*of, double BatchTaken::*per) const {
+  double above = 0, below = 0;
   for (const auto& batch : last) {
-    cost += batch.cost_ms;
-    rays += batch.rays;
+    above += batch.*of;
+    below += batch.*per;
   }
-  return rays > 0 ? cost / rays : 0;
-}
-
-double StrategyTrial::Side::rays_a_camera_ray() const {
-  double rays = 0, camera = 0;
-  for (const auto& batch : last) {
-    rays += batch.rays;
-    camera += batch.camera_rays;
-  }
-  return camera > 0 ? rays / camera : 0;
+  return below > 0 ? above / below : 0;
 }
 
 // Of the run, by the strategy at work.
 double StrategyTrial::left_ms() const {
-  const Side& mine = side(now_);
-  return std::max(terms_.camera_rays - done_, 0.0) * mine.rays_a_camera_ray() * mine.per_ray();
+  return std::max(terms_.camera_rays - done_, 0.0) * side(now_).ratio(&BatchTaken::cost_ms, &BatchTaken::camera_rays);
 }
 
 Strategy StrategyTrial::next(bool second_made) {
@@ -96,14 +86,14 @@ void StrategyTrial::compare() {
   ++looks_;
   since_ = 0;
   settled_per_ray_ = side(now_).per_ray();
-  settled_rays_ = side(now_).rays_a_camera_ray();
+  settled_rays_ = side(now_).rays_per_camera_ray();
   phase_ = Phase::settled;
 }
 
 bool StrategyTrial::changed() const {
   const auto differ = [](double a, double b) { return a > much * b || b > much * a; };
   const Side& mine = side(now_);
-  return differ(mine.per_ray(), settled_per_ray_) || differ(mine.rays_a_camera_ray(), settled_rays_);
+  return differ(mine.per_ray(), settled_per_ray_) || differ(mine.rays_per_camera_ray(), settled_rays_);
 }
 
 bool StrategyTrial::time_to_look() const {

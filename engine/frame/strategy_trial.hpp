@@ -53,8 +53,9 @@ class StrategyTrial {
   enum class Phase { alone, making, warming, measuring, settled };
   struct Side {
     std::deque<BatchTaken> last;  // at most `span`
-    [[nodiscard]] double per_ray() const;
-    [[nodiscard]] double rays_a_camera_ray() const;
+    [[nodiscard]] double ratio(double BatchTaken::*of, double BatchTaken::*per) const;
+    [[nodiscard]] double per_ray() const { return ratio(&BatchTaken::cost_ms, &BatchTaken::rays); }
+    [[nodiscard]] double rays_per_camera_ray() const { return ratio(&BatchTaken::rays, &BatchTaken::camera_rays); }
   };
 
   [[nodiscard]] Side& side(Strategy s) { return s == terms_.first ? first_ : second_; }
