@@ -72,6 +72,10 @@ std::optional<RequestHead> ClientStream::read_head() {
 }
 
 void ClientStream::begin(const RequestHead& head, std::uint64_t body_limit) {
+  // The library knows few methods and only needs to know whether a body is to be sent.
+  shown_ = std::string(head.method == "HEAD" ? "HEAD" : "GET") + " / HTTP/1." + (head.http_1_0 ? "0" : "1") + "\r\n";
+  if (!head.keep_alive) shown_ += "Connection: close\r\n";
+  shown_ += "\r\n";
   continue_due_ = head.expects_continue;
   body_.emplace(head, body_limit, [this](char* into, std::size_t size) { return take(into, size); });
 }
@@ -101,17 +105,23 @@ std::size_t ClientStream::take(char* into, std::size_t size) {
 
 std::size_t ClientStream::read_body(char* into, std::size_t size) { return body_ ? body_->read(into, size) : 0; }
 
-bool ClientStream::write(std::string_view bytes) {
-  while (!failed_ && !bytes.empty()) {
-    const ssize_t n = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(n));
-    else if (errno == EAGAIN || errno == EWOULDBLOCK)
-      failed_ = !wait_for(POLLOUT, Clock::now() + timeouts_.write);
-    else
-      failed_ = errno != EINTR;
+ssize_t ClientStream::read(char* into, size_t size) {
+  const std::size_t n = std::min(size, shown_.size());
+  std::memcpy(into, shown_.data(), n);
+  shown_.erase(0, n);
+  return static_cast<ssize_t>(n);
+}
+
+bool ClientStream::is_writable() const { return !failed_ && wait_for(POLLOUT, Clock::now() + timeouts_.write); }
+
+ssize_t ClientStream::write(const char* bytes, size_t size) {
+  while (!failed_) {
+    const ssize_t n = ::send(socket_.get(), bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n >= 0) return n;
+    if (errno == EINTR) continue;
+    if ((errno != EAGAIN && errno != EWOULDBLOCK) || !is_writable()) failed_ = true;
   }
-  return !failed_;
+  return -1;
 }
 
 void ClientStream::close_gently() {

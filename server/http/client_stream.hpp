@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// One client's connection: reads requests' heads and bodies and writes replies, under deadlines and limits.
+// One client's connection. It stands between the socket and cpp-httplib: heads and bodies are read here, under
+// deadlines and limits, and the library is shown only a plain request line, so that no byte a stranger sends reaches
+// the library's parsers. Replies pass through write().
 #pragma once
 
-#include <sys/types.h>
+#include <httplib.h>
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "http/body_reader.hpp"
 #include "http/request_head.hpp"
@@ -31,7 +32,7 @@ class StallObserver {
   virtual void goes_on(int fd) = 0;
 };
 
-class ClientStream {
+class ClientStream : public httplib::Stream {
  public:
   ClientStream(Fd socket, StreamTimeouts timeouts, HeadLimits limits)
       : socket_(std::move(socket)), timeouts_(timeouts), limits_(limits) {}
@@ -42,7 +43,7 @@ class ClientStream {
   /// Next request's head; nothing if the client has closed. Throws Problem.
   [[nodiscard]] std::optional<RequestHead> read_head();
 
-  /// From now on read_body() gives the body of this request.
+  /// Makes read() give the library the request line of `head`, and read_body() its body.
   void begin(const RequestHead& head, std::uint64_t body_limit);
   std::size_t read_body(char* into, std::size_t size);
   [[nodiscard]] bool body_finished() const { return !body_ || body_->finished(); }
@@ -50,12 +51,20 @@ class ClientStream {
   [[nodiscard]] bool has_buffered() const { return !buffer_.empty(); }
   [[nodiscard]] int fd() const { return socket_.get(); }
 
-  /// Writes all of it. False, from then on, if the client has gone or takes nothing for too long.
-  bool write(std::string_view bytes);
-
   /// Ends our side and waits a little for the client's, so that the reply is not lost in a reset when the client is
   /// still sending (RFC 9112, 9.6).
   void close_gently();
+
+  // What cpp-httplib asks of a stream.
+  bool is_readable() const override { return true; }
+  bool is_writable() const override;
+  ssize_t read(char* into, size_t size) override;
+  ssize_t write(const char* bytes, size_t size) override;
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
+  void get_local_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
+  /// Only compared with FD_SETSIZE by the library, which does not use select() on it.
+  socket_t socket() const override { return 0; }
+  using httplib::Stream::write;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,6 +77,7 @@ class ClientStream {
   StreamTimeouts timeouts_;
   HeadLimits limits_;
   std::string buffer_;  // received, not yet used: a pipelined request's bytes stay here
+  std::string shown_;   // what the library still has to read
   std::optional<BodyReader> body_;
   bool continue_due_ = false, failed_ = false;
 };

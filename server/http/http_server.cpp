@@ -12,8 +12,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "http/exchange.hpp"
 #include "http/guarded.hpp"
-#include "http/reply_writer.hpp"
 #include "util/ids.hpp"
 #include "util/log.hpp"
 #include "util/problem.hpp"
@@ -57,8 +57,13 @@ HttpServer::HttpServer(HttpOptions options, Handler handler, Observer observer)
         discard(std::move(connection));
       }) {
   if (!epoll_.valid() || !wake_.valid()) throw io_error("epoll", std::strerror(errno));
+  install_exchange(*this);
+  svr_sock_ = epoll_.get();  // the library takes any valid descriptor for "running"
+  rehearse([this](httplib::Stream& stream) { return run_exchange(*this, &HttpServer::process_request, stream); });
   watch(epoll_.get(), wake_.get(), EPOLLIN);
 }
+
+HttpServer::~HttpServer() = default;
 
 std::string HttpServer::bind(const std::string& host, const std::string& port) {
   const std::string name = host + ":" + port;
@@ -106,6 +111,7 @@ void HttpServer::run() {
   pool_.shut_down_sockets(SHUT_RD);
   pool_.drain(Clock::now() + options_.drain);
   pump_.stop(Clock::now() + options_.drain);
+  svr_sock_ = INVALID_SOCKET;
   pool_.shut_down_sockets(SHUT_RDWR);
   pool_.join();
 }
@@ -206,24 +212,23 @@ bool HttpServer::serve_one(ConnectionPtr& connection) {
     hand_over(std::move(connection), *head, std::move(reply), record, started);
     return false;
   }
-  const bool keep = head->keep_alive && stream.body_finished();
-  const bool sent = write_reply(stream, reply, *head, keep);
+  const ExchangeScope scope([&](httplib::Response& response) { fill(response, std::move(reply), *head); });
+  const bool sent = run_exchange(*this, &HttpServer::process_request, stream);
   record.seconds = Clock::now() - started;
   if (observer_) observer_(record);
 
   if (!stream.body_finished()) stream.close_gently();
-  return sent && keep;
+  return sent && head->keep_alive && stream.body_finished();
 }
 
 /// What the client sends meanwhile stays in its socket until the reply is over.
 void HttpServer::hand_over(ConnectionPtr connection, const RequestHead& head, Reply reply, const ExchangeRecord& record,
                            Clock::time_point started) {
-  const ReplyFraming framing = framing_of(reply, head.http_1_0);
+  const bool chunked = !head.http_1_0;
   const bool keep = head.keep_alive && connection->stream.body_finished() && !connection->stream.has_buffered();
   pool_.release(connection->stream.fd());
-  std::string text = reply_head(reply, framing, keep);
-  pump_.add({std::move(connection), std::move(text), *std::move(reply.lasting), framing == ReplyFraming::chunked, keep,
-             record, started});
+  std::string text = lasting_head(reply, chunked, keep);
+  pump_.add({std::move(connection), std::move(text), *std::move(reply.lasting), chunked, keep, record, started});
 }
 
 Reply HttpServer::answer(const RequestHead& head, ClientStream& stream, ExchangeRecord& record) {
@@ -244,6 +249,7 @@ Reply HttpServer::answer(const RequestHead& head, ClientStream& stream, Exchange
   record.status = reply.status;
   record.refusal = reply.refusal;
   reply.header("X-Request-Id", record.id);
+  if (!stream.body_finished() && head.keep_alive) reply.header("Connection", "close");
   return reply;
 }
 
@@ -251,7 +257,12 @@ bool HttpServer::refuse_head(ClientStream& stream, const Problem& problem) {
   ExchangeRecord record;
   record.status = problem.status();
   record.refusal = problem.slug();
-  (void)write_reply(stream, problem_reply(problem, ""), RequestHead{}, false);
+  const std::string text = plain_refusal(problem);
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = stream.write(text.data() + at, text.size() - at);
+    if (n < 0) break;
+    at += static_cast<std::size_t>(n);
+  }
   stream.close_gently();
   if (observer_) observer_(record);
   return false;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Connections to threads. Idle keep-alive connections wait in epoll and cost no thread; a connection takes a thread
 // from the pool (worker_pool.hpp) while it sends a request and is sent the reply. A reply that lasts (an event stream)
-// takes the connection on to the stream pump.
+// takes the connection on to the stream pump. cpp-httplib runs the exchange and writes every other reply.
 #pragma once
+
+#include <httplib.h>
 
 #include <atomic>
 #include <chrono>
@@ -27,13 +29,14 @@ struct HttpOptions {
   HeadLimits head;
 };
 
-class HttpServer {
+class HttpServer : private httplib::Server {
  public:
   using Handler = std::function<Reply(Request&)>;
   using Observer = std::function<void(const ExchangeRecord&)>;
 
   /// `handler` may throw Problem, sheaf::Error or anything else: each becomes problem+json.
   HttpServer(HttpOptions options, Handler handler, Observer observer);
+  ~HttpServer() override;
 
   /// Port 0: any free one. Returns "host:port" as bound; throws Error{io}.
   std::string bind(const std::string& host, const std::string& port);

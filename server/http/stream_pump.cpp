@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 
 #include "core/error.hpp"
-#include "http/reply_writer.hpp"
 #include "util/log.hpp"
 
 namespace sheaf::server {
@@ -19,6 +19,12 @@ namespace {
 
 constexpr std::uint64_t own_event = 0;  // streams are numbered from 1
 constexpr auto longest_sleep = std::chrono::seconds(60);
+
+std::string as_chunk(const std::string& text) {
+  std::array<char, 20> size{};
+  const auto end = std::to_chars(size.data(), size.data() + size.size(), text.size(), 16).ptr;
+  return std::string(size.data(), end) + "\r\n" + text + "\r\n";
+}
 
 void watch(int epoll, int fd, std::uint64_t number, std::uint32_t events) {
   epoll_event event{};
@@ -142,7 +148,7 @@ void StreamPump::run_stream(std::uint64_t number, Clock::time_point now) {
     stream.over = !stream.job.body.advance(text);
     stream.due = stream.job.body.due();
     if (!text.empty()) stream.out = stream.job.chunked ? as_chunk(text) : text;
-    if (stream.over && stream.job.chunked) stream.out += last_chunk;
+    if (stream.over && stream.job.chunked) stream.out += "0\r\n\r\n";
     if (stream.out.empty() && !stream.over) return;
   }
 }
