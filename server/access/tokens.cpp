@@ -78,14 +78,14 @@ Tokens::Version Tokens::version_of(const std::string& path) {
 
 std::shared_ptr<const Tokens::Entries> Tokens::current() const {
   const std::lock_guard lock(mutex_);
-  const Version now = version_of(path_);  // before it is read: what changes meanwhile is seen the next time
+  const Version now = version_of(path_);  // taken before reading: a change in between is noticed the next time
   if (now == version_) return entries_;
   version_ = now;
   try {
     entries_ = std::make_shared<const Entries>(read(path_));
     write_log(LogLevel::info, "token file read again", {{"file", path_}, {"tokens", entries_->size()}});
   } catch (const Error& error) {
-    write_log(LogLevel::error, "token file is bad: the tokens of before hold", {{"reason", error.what()}});
+    write_log(LogLevel::error, "token file is bad: the earlier tokens stay valid", {{"reason", error.what()}});
   }
   return entries_;
 }
@@ -96,7 +96,7 @@ Tokens::Entries Tokens::read(const std::string& path) {
   if (!file) throw io_error(path, "cannot be read");
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && (info.st_mode & S_IWOTH) != 0)
-    throw input_error(path, "everybody may write it: chmod o-w");
+    throw input_error(path, "everybody may write to it: chmod o-w");
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) read_line(path, number, line, entries);
   if (entries.empty()) throw input_error(path, "holds no token");
@@ -112,7 +112,7 @@ void Tokens::read_line(const std::string& path, std::size_t number, const std::s
     throw input_error(path, "line " + std::to_string(number) + ": " + why);
   };
   const std::optional<unsigned> known = scopes_of(scopes);
-  if (!is_name(name)) refuse("'" + name + "' is no name of up to 64 letters, digits and -_.@");
+  if (!is_name(name)) refuse("'" + name + "' is not a name of up to 64 letters, digits and -_.@");
   if (!known) refuse("'" + scopes + "' is neither read nor submit nor both with a comma");
   if (!hash.starts_with(hash_mark) || !is_hash(hash.substr(hash_mark.size())) || words >> more)
     refuse("the third and last word must be sha256: and 64 hexadecimal digits in lower case");
@@ -130,7 +130,7 @@ std::string Tokens::authorize(const Request& request, Scope scope) const {
   const std::string hash = sha256_of(token);
   const auto entries = current();
   const Entry* found = nullptr;
-  for (const Entry& entry : *entries)  // every one of them, whichever it is
+  for (const Entry& entry : *entries)  // all of them, so that the time does not depend on which one matches
     if (equal_in_constant_time(entry.hash, hash)) found = &entry;
   if (!found) unauthorized("the token is not known", ", error=\"invalid_token\"");
   if ((found->scopes & static_cast<unsigned>(scope)) == 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Who may do what: bearer tokens (RFC 6750), known to the service by their SHA-256 alone. Tokens are 256 random bits,
-// so that a plain hash of one tells nobody the token.
+// Who may do what: bearer tokens (RFC 6750). The service stores only their SHA-256; tokens are 256 random bits, so the
+// hash cannot be reversed by guessing.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ class Tokens {
 
   /// Lines "NAME SCOPES sha256:HEX", SCOPES being read, submit or both with a comma; '#' starts a comment. Throws
   /// Error{io, input} naming the line. The file is read again once it has changed: who was taken out of it is refused
-  /// from the next request on. While it cannot be read or has a bad line, the last good one holds, and the log says so.
+  /// from the next request on. While it cannot be read or has a bad line, the last valid version stays in force, and
+  /// the log says so.
   explicit Tokens(const std::string& path);
 
   [[nodiscard]] bool required() const { return !path_.empty(); }
@@ -37,7 +38,7 @@ class Tokens {
   };
   using Entries = std::vector<Entry>;
 
-  /// What tells one state of a file from another; equal for two that cannot be seen.
+  /// Identifies one state of a file; equal for any two that cannot be read.
   struct Version {
     std::uint64_t device = 0, inode = 0, size = 0;
     std::int64_t changed_ns = -1;  // ctime: set by every way to change a file or to put another in its place
@@ -56,7 +57,7 @@ class Tokens {
 };
 
 struct NewToken {
-  std::string token, line;  // what its owner keeps, and what the token file is given
+  std::string token, line;  // for its owner, and for the token file
 };
 
 /// `text` is "NAME=SCOPES". Throws Error{usage}.

@@ -75,7 +75,7 @@ std::string BodyReader::line() {
 void BodyReader::refuse_size(std::uint64_t size) const {
   throw Problem(ProblemKind::too_large,
                 "the body has at least " + std::to_string(size) + " bytes, the limit is " + std::to_string(limit_))
-      .passed("max-upload", limit_, size);
+      .exceeded("max-upload", limit_, size);
 }
 
 }  // namespace sheaf::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A request's body out of the bytes of its connection: counted by Content-Length or by chunks (RFC 9112, 7.1), never
-// a byte more, bounded whatever the client declares.
+// Reads a request's body, delimited by Content-Length or by chunks (RFC 9112, 7.1). It reads no byte beyond the body,
+// and never more than the limit, whatever the client declares.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace sheaf::server {
 
 class BodyReader {
  public:
-  /// At most `size` bytes, 0 when the peer has ended. May throw.
+  /// At most `size` bytes, 0 at the end of the connection. May throw.
   using Source = std::function<std::size_t(char* into, std::size_t size)>;
 
   BodyReader(const RequestHead& head, std::uint64_t limit, Source source);

@@ -32,9 +32,9 @@ bool wait_until_ready(int fd, short events, Clock::time_point deadline) {
 bool ClientStream::wait_for(short events, Clock::time_point deadline) const {
   pollfd entry{socket_.get(), events, 0};
   if (!observer_ || ::poll(&entry, 1, 0) != 0) return wait_until_ready(socket_.get(), events, deadline);
-  observer_->stalls(socket_.get());
+  observer_->on_stall(socket_.get());
   const bool ready = wait_until_ready(socket_.get(), events, deadline);
-  observer_->goes_on(socket_.get());
+  observer_->on_resume(socket_.get());
   return ready;
 }
 
@@ -43,7 +43,7 @@ std::size_t ClientStream::receive(char* into, std::size_t size, Clock::time_poin
     const ssize_t n = ::recv(socket_.get(), into, size, MSG_DONTWAIT);
     if (n >= 0) return static_cast<std::size_t>(n);
     if (errno == EINTR) continue;
-    if (errno != EAGAIN && errno != EWOULDBLOCK) return 0;  // reset: as good as ended
+    if (errno != EAGAIN && errno != EWOULDBLOCK) return 0;  // a reset ends the connection
     if (!wait_for(POLLIN, deadline))
       throw Problem(ProblemKind::request_timeout, "no further bytes of the request came in time");
   }
@@ -124,7 +124,7 @@ ssize_t ClientStream::write(const char* bytes, size_t size) {
   return -1;
 }
 
-void ClientStream::close_gently() {
+void ClientStream::close_lingering() {
   ::shutdown(socket_.get(), SHUT_WR);
   const auto deadline = Clock::now() + std::chrono::seconds(1);
   char block[16384];

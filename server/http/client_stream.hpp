@@ -24,12 +24,12 @@ struct StreamTimeouts {
   std::chrono::milliseconds write{30'000};  // until the client takes the next bytes of a reply
 };
 
-/// Is told when a client keeps its thread waiting, and when no more.
+/// Is notified when a client blocks its thread, and when it no longer does.
 class StallObserver {
  public:
   virtual ~StallObserver() = default;
-  virtual void stalls(int fd) = 0;
-  virtual void goes_on(int fd) = 0;
+  virtual void on_stall(int fd) = 0;
+  virtual void on_resume(int fd) = 0;
 };
 
 class ClientStream : public httplib::Stream {
@@ -37,10 +37,10 @@ class ClientStream : public httplib::Stream {
   ClientStream(Fd socket, StreamTimeouts timeouts, HeadLimits limits)
       : socket_(std::move(socket)), timeouts_(timeouts), limits_(limits) {}
 
-  /// `observer` outlives the stream, or is taken away again.
-  void tell_stalls(StallObserver* observer) { observer_ = observer; }
+  /// `observer` must outlive the stream, or be reset to null.
+  void observe_stalls(StallObserver* observer) { observer_ = observer; }
 
-  /// Next request's head; nothing if the client has closed. Throws Problem.
+  /// The next request's head; nothing if the client has closed the connection. Throws Problem.
   [[nodiscard]] std::optional<RequestHead> read_head();
 
   /// Makes read() give the library the request line of `head`, and read_body() its body.
@@ -53,7 +53,7 @@ class ClientStream : public httplib::Stream {
 
   /// Ends our side and waits a little for the client's, so that the reply is not lost in a reset when the client is
   /// still sending (RFC 9112, 9.6).
-  void close_gently();
+  void close_lingering();
 
   // What cpp-httplib asks of a stream.
   bool is_readable() const override { return true; }

@@ -16,7 +16,7 @@ struct Connection {
 };
 using ConnectionPtr = std::unique_ptr<Connection>;
 
-/// What is told about each finished exchange.
+/// What the log and the metrics get of each finished exchange.
 struct ExchangeRecord {
   std::string id, method, path;
   std::string job;      // the route's, if it names one

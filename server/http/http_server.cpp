@@ -217,7 +217,7 @@ bool HttpServer::serve_one(ConnectionPtr& connection) {
   record.seconds = Clock::now() - started;
   if (observer_) observer_(record);
 
-  if (!stream.body_finished()) stream.close_gently();
+  if (!stream.body_finished()) stream.close_lingering();
   return sent && head->keep_alive && stream.body_finished();
 }
 
@@ -263,7 +263,7 @@ bool HttpServer::refuse_head(ClientStream& stream, const Problem& problem) {
     if (n < 0) break;
     at += static_cast<std::size_t>(n);
   }
-  stream.close_gently();
+  stream.close_lingering();
   if (observer_) observer_(record);
   return false;
 }

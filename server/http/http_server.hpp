@@ -24,7 +24,7 @@ struct HttpOptions {
   std::size_t max_connections = 4000;
   std::uint64_t max_body = std::uint64_t{1} << 30;
   std::chrono::seconds keep_alive{75};  // how long an idle connection may wait for its next request
-  std::chrono::seconds drain{3};        // how long replies may go on once stop() was called
+  std::chrono::seconds drain{3};        // how long replies may continue after stop()
   StreamTimeouts timeouts;
   HeadLimits head;
 };
@@ -41,7 +41,7 @@ class HttpServer : private httplib::Server {
   /// Port 0: any free one. Returns "host:port" as bound; throws Error{io}.
   std::string bind(const std::string& host, const std::string& port);
 
-  /// Serves until stop(); then no new connection is taken, replies under way get `drain` to end.
+  /// Serves until stop(); then no new connection is accepted, and replies in progress have `drain` to end.
   void run();
   void stop();
   [[nodiscard]] std::size_t connections() const { return open_.load(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Requests and replies as the routes see them, apart from any HTTP library.
+// Requests and replies as the routes see them, independent of how they are transferred.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@
 
 namespace sheaf::server {
 
-using Headers = std::vector<std::pair<std::string, std::string>>;  // in order of arrival; names as they came
+using Headers = std::vector<std::pair<std::string, std::string>>;  // in order of arrival; names as received
 
 /// First header of that name, whatever its case.
 [[nodiscard]] std::optional<std::string> find_header(const Headers& headers, std::string_view name);
@@ -41,24 +41,24 @@ struct Request {
   void allow_arguments(std::initializer_list<std::string_view> names) const;
 };
 
-/// Takes the next bytes of a body; false: the client is gone, stop.
+/// Sends the next bytes of a body; false: the client has gone, stop.
 using Writer = std::function<bool(std::string_view bytes)>;
 
-/// A body that is made while it is sent. Returns false to break the connection off, so that the client notices.
+/// A body that is made while it is sent. `produce` returns false to abort the connection, so that the client notices.
 struct StreamBody {
   std::optional<std::uint64_t> length;  // chunked without it
   std::function<bool(const Writer& write)> produce;
 };
 
-/// A body that lasts: its bytes come when there is news, and nobody waits in between.
+/// A body whose bytes become available over time (event stream, long poll); no thread waits in between.
 struct LastingBody {
-  /// Appends what is to be sent now; false once nothing will follow.
+  /// Appends what is to be sent now; false if the body ends with it.
   std::function<bool(std::string& out)> advance;
 
-  /// When advance() is to be called though there was no news.
+  /// When advance() must be called even without a wake.
   std::function<std::chrono::steady_clock::time_point()> due;
 
-  /// From now on `wake` is called, from any thread, when there is news; until the result is gone.
+  /// Until the result is destroyed, `wake` is called, from any thread, when advance() would append something.
   std::function<std::shared_ptr<void>(std::function<void()> wake)> watch;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The start line and headers of a request, read strictly before anything else sees them: CRLF line ends, token names,
-// no folded lines, one way to tell the body's length. What two parsers could read in two ways is refused, so that a
+// no folded lines, one way to give the body's length. What two parsers could read in two ways is refused, so that a
 // proxy in front and this service never disagree on where a request ends.
 #pragma once
 

@@ -74,7 +74,7 @@ Reply Router::dispatch(Request& request) const {
   if (std::ranges::find(known, request.method) == known.end())
     throw Problem(ProblemKind::not_implemented, "method " + quote(request.method) + " is not known");
   std::set<std::string> allowed;
-  if (request.path == "*") {  // the whole server, of which only OPTIONS asks
+  if (request.path == "*") {  // the whole server: valid for OPTIONS alone
     for (const Route& route : routes_) allowed.insert(route.method);
     return options_reply(allowed);
   }
@@ -89,7 +89,7 @@ Reply Router::dispatch(Request& request) const {
     }
     allowed.insert(route.method);
   }
-  if (allowed.empty()) throw Problem(ProblemKind::unknown_route, "nothing is at " + quote(request.path));
+  if (allowed.empty()) throw Problem(ProblemKind::unknown_route, "there is no route " + quote(request.path));
 
   if (request.method == "OPTIONS") return options_reply(allowed);
   throw Problem(ProblemKind::method_not_allowed, quote(request.method) + " is not allowed at " + quote(request.path))

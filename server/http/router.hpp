@@ -12,7 +12,7 @@ namespace sheaf::server {
 using RouteHandler = std::function<Reply(Request&)>;
 
 /// Patterns are paths whose segments may hold one placeholder with text around it: "/v1/jobs/{id}/frames/{frame}.exr".
-/// A GET route answers HEAD too (the reply's body is not sent), and every path answers OPTIONS.
+/// A GET route also answers HEAD (without the body), and every path answers OPTIONS.
 class Router {
  public:
   void add(const std::string& method, const std::string& pattern, RouteHandler handler);

@@ -47,10 +47,10 @@ StreamPump::StreamPump(std::chrono::milliseconds write_timeout, Done done)
 
 StreamPump::~StreamPump() { stop(Clock::now()); }
 
-void StreamPump::add(Job job) {
+void StreamPump::add(LastingReply reply) {
   {
     const std::lock_guard lock(mutex_);
-    arrived_.emplace_back(++last_, std::move(job));
+    arrived_.emplace_back(++last_, std::move(reply));
   }
   notify();
 }
@@ -118,24 +118,24 @@ void StreamPump::work() {
 void StreamPump::take_arrivals(std::set<std::uint64_t>& ready) {
   std::uint64_t count = 0;
   [[maybe_unused]] const ssize_t n = ::read(event_.get(), &count, sizeof count);
-  std::vector<std::pair<std::uint64_t, Job>> arrived;
+  std::vector<std::pair<std::uint64_t, LastingReply>> arrived;
   {
     const std::lock_guard lock(mutex_);
     arrived.swap(arrived_);
     ready.merge(woken_);
     woken_.clear();
   }
-  for (auto& [number, job] : arrived) {
+  for (auto& [number, reply] : arrived) {
     Stream& stream = streams_[number];
-    stream.job = std::move(job);
-    stream.out = stream.job.head;
-    watch(epoll_.get(), stream.job.connection->stream.fd(), number, EPOLLRDHUP);
-    stream.watch = stream.job.body.watch([this, number = number] { wake(number); });
+    stream.reply = std::move(reply);
+    stream.out = stream.reply.head;
+    watch(epoll_.get(), stream.reply.connection->stream.fd(), number, EPOLLRDHUP);
+    stream.watch = stream.reply.body.watch([this, number = number] { wake(number); });
     ready.insert(number);
   }
 }
 
-/// Writes what waits; asks for more only when that is gone, so that a slow client costs one batch of memory.
+/// Writes what is pending; asks for more only when that is sent, so that a slow client costs one batch of memory.
 void StreamPump::run_stream(std::uint64_t number, Clock::time_point now) {
   const auto found = streams_.find(number);
   if (found == streams_.end()) return;
@@ -145,17 +145,17 @@ void StreamPump::run_stream(std::uint64_t number, Clock::time_point now) {
     if (!write_out(number, stream)) return;
     if (stream.over) return finish(number, true);
     std::string text;
-    stream.over = !stream.job.body.advance(text);
-    stream.due = stream.job.body.due();
-    if (!text.empty()) stream.out = stream.job.chunked ? as_chunk(text) : text;
-    if (stream.over && stream.job.chunked) stream.out += "0\r\n\r\n";
+    stream.over = !stream.reply.body.advance(text);
+    stream.due = stream.reply.body.due();
+    if (!text.empty()) stream.out = stream.reply.chunked ? as_chunk(text) : text;
+    if (stream.over && stream.reply.chunked) stream.out += "0\r\n\r\n";
     if (stream.out.empty() && !stream.over) return;
   }
 }
 
-/// True once everything is written; otherwise the stream waits for room, or is no more.
+/// True once everything is written; otherwise the stream waits for room, or has been finished.
 bool StreamPump::write_out(std::uint64_t number, Stream& stream) {
-  const int fd = stream.job.connection->stream.fd();
+  const int fd = stream.reply.connection->stream.fd();
   while (!stream.out.empty()) {
     const ssize_t n = ::send(fd, stream.out.data(), stream.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0 && errno == EINTR) continue;
@@ -182,10 +182,10 @@ void StreamPump::finish(std::uint64_t number, bool whole) {
   if (node.empty()) return;
   Stream& stream = node.mapped();
   stream.watch.reset();
-  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, stream.job.connection->stream.fd(), nullptr);
-  stream.job.record.seconds = Clock::now() - stream.job.started;
-  stream.job.body = {};  // lets go of what it holds before the client may ask again
-  done_(std::move(stream.job.connection), stream.job.record, whole && stream.job.keep);
+  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, stream.reply.connection->stream.fd(), nullptr);
+  stream.reply.record.seconds = Clock::now() - stream.reply.started;
+  stream.reply.body = {};  // frees its slot before the client may ask again
+  done_(std::move(stream.reply.connection), stream.reply.record, whole && stream.reply.keep);
 }
 
 }  // namespace sheaf::server

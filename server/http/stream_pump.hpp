@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Replies that last (event streams, long polls), all on one thread: each is woken when its source has news or its time
-// has come, and written as far as its client takes it. None of them can hold up another, or a thread that answers
-// requests.
+// Sends lasting replies (event streams, long polls), all on one thread. Each is woken when its source has something to
+// send or its deadline has passed, and is written as far as its client's socket has room. None can block another, or a
+// thread that answers requests.
 #pragma once
 
 #include <map>
@@ -17,14 +17,14 @@ namespace sheaf::server {
 
 class StreamPump {
  public:
-  /// `done` gets the connection back: `keep` if another request may follow on it.
+  /// `done` receives the connection: with `keep` another request may follow on it.
   using Done = std::function<void(ConnectionPtr connection, const ExchangeRecord& record, bool keep)>;
   StreamPump(std::chrono::milliseconds write_timeout, Done done);
   ~StreamPump();
   StreamPump(const StreamPump&) = delete;
   StreamPump& operator=(const StreamPump&) = delete;
 
-  struct Job {
+  struct LastingReply {
     ConnectionPtr connection;
     std::string head;  // of the reply, as it goes out
     LastingBody body;
@@ -32,15 +32,15 @@ class StreamPump {
     ExchangeRecord record;
     std::chrono::steady_clock::time_point started;
   };
-  void add(Job job);
+  void add(LastingReply reply);
 
-  /// Ends what is over, gives the rest until `deadline`, then drops it. Nothing may be added after.
+  /// Lets replies end until `deadline`, then drops the rest. Nothing may be added afterwards.
   void stop(std::chrono::steady_clock::time_point deadline);
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Stream {
-    Job job;
+    LastingReply reply;
     std::string out;  // written next
     std::shared_ptr<void> watch;
     Clock::time_point due, stuck_at;
@@ -60,12 +60,12 @@ class StreamPump {
   Done done_;
   Fd epoll_, event_;
   std::mutex mutex_;
-  std::vector<std::pair<std::uint64_t, Job>> arrived_;
+  std::vector<std::pair<std::uint64_t, LastingReply>> arrived_;
   std::set<std::uint64_t> woken_;
   std::uint64_t last_ = 0;
   bool stopping_ = false;
   Clock::time_point deadline_;
-  std::map<std::uint64_t, Stream> streams_;  // the thread's own
+  std::map<std::uint64_t, Stream> streams_;  // used by the thread alone
   std::thread thread_;
 };
 

@@ -20,35 +20,37 @@ void WorkerPool::start() {
   while (threads_.size() < options_.threads) grow();
 }
 
-/// Under the lock. Where the system has no further thread, those that are there must do.
+/// Under the lock. If the system cannot start another thread, the pool goes on with those it has.
 void WorkerPool::grow() {
   const std::uint64_t number = ++last_;
   try {
     threads_.emplace(number, std::thread([this, number] { work(number); }));
   } catch (const std::system_error& error) {
     if (threads_.size() == ended_.size()) throw;
-    write_log(LogLevel::warning, "no further thread", {{"threads", threads_.size()}, {"reason", error.what()}});
+    write_log(LogLevel::warning, "cannot start another thread",
+              {{"threads", threads_.size()}, {"reason", error.what()}});
   }
 }
 
 void WorkerPool::add(ConnectionPtr connection) {
-  connection->stream.tell_stalls(this);
+  connection->stream.observe_stalls(this);
   {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(connection));
-    make_room();
+    grow_or_evict();
   }
   ready_.notify_one();
 }
 
-/// Under the lock: somebody waits.
-void WorkerPool::make_room() {
+/// Under the lock, when a connection waits: starts another thread, or cuts off the client that has been stalled
+/// longest.
+void WorkerPool::grow_or_evict() {
   if (closed_ || waiting_.empty() || running() >= options_.threads) return;
-  if (stalled_ < options_.most_stalled) return grow();
+  if (stalled_ < options_.max_stalled) return grow();
   const auto first = std::ranges::min_element(
       busy_, {}, [](const auto& entry) { return entry.second.value_or(Clock::time_point::max()); });
   if (first == busy_.end() || !first->second || Clock::now() - *first->second < options_.patience) return;
-  ::shutdown(first->first, SHUT_RDWR);  // its thread sees an error and goes on; not to be chosen again
+  ::shutdown(first->first, SHUT_RDWR);  // its thread gets an error and ends; not to be chosen again
   first->second.reset();
   --stalled_;
 }
@@ -62,16 +64,16 @@ void WorkerPool::release(int fd) {
   drained_.notify_all();
 }
 
-void WorkerPool::stalls(int fd) {
+void WorkerPool::on_stall(int fd) {
   const std::lock_guard lock(mutex_);
   const auto found = busy_.find(fd);
   if (found == busy_.end() || found->second) return;
   found->second = Clock::now();
   ++stalled_;
-  make_room();
+  grow_or_evict();
 }
 
-void WorkerPool::goes_on(int fd) {
+void WorkerPool::on_resume(int fd) {
   const std::lock_guard lock(mutex_);
   const auto found = busy_.find(fd);
   if (found == busy_.end() || !found->second) return;
@@ -81,7 +83,7 @@ void WorkerPool::goes_on(int fd) {
 
 ConnectionPtr WorkerPool::next(std::uint64_t number) {
   std::unique_lock lock(mutex_);
-  if (waiting_.empty() && !closed_ && running() > options_.threads) {  // clients have come to again
+  if (waiting_.empty() && !closed_ && running() > options_.threads) {  // fewer clients are stalled than before
     ended_.push_back(number);
     return nullptr;
   }
@@ -104,7 +106,7 @@ bool WorkerPool::tick() {
     const std::lock_guard lock(mutex_);
     for (const std::uint64_t number : std::exchange(ended_, {}))
       gone.push_back(std::move(threads_.extract(number).mapped()));
-    for (std::size_t i = 0; i < waiting_.size(); ++i) make_room();
+    for (std::size_t i = 0; i < waiting_.size(); ++i) grow_or_evict();
     waited_for = !waiting_.empty();
   }
   for (std::thread& thread : gone) thread.join();

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr rlim_t open_files = 1024;
 
-// What programs are made of and drivers look at. Not /home, /root, /tmp, /var or all of /etc.
+// What programs and drivers need to read. Not /home, /root, /tmp, /var or all of /etc.
 constexpr const char* system_paths[] = {"/usr",
                                         "/lib",
                                         "/lib32",
@@ -119,13 +119,13 @@ Confinement::Confinement(const ConfinementOptions& options, const std::string& p
 unsigned Confinement::apply() const noexcept {
   unsigned held = 0;
   if (::nice(options_.nice) == -1) {
-    // It may also be the niceness; either way the worker goes on.
+    // -1 may also be the new niceness; either way the worker runs.
   }
-  // SIGXCPU says what it was; SIGKILL follows for a worker that will not hear.
+  // SIGXCPU tells the reason; SIGKILL follows for a worker that ignores it.
   const std::array set{limit(RLIMIT_CORE, 0, 0), limit(RLIMIT_DATA, options_.memory_bytes, options_.memory_bytes),
                        limit(RLIMIT_CPU, options_.cpu_seconds, options_.cpu_seconds + 5),
                        limit(RLIMIT_FSIZE, options_.file_bytes, options_.file_bytes),
-                       limit(RLIMIT_NOFILE, open_files, open_files)};  // the others also where one cannot be
+                       limit(RLIMIT_NOFILE, open_files, open_files)};  // all are tried even if one fails
   if (std::find(set.begin(), set.end(), false) == set.end()) held |= limits;
   if (!options_.on) return held;
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) held |= no_new_privileges;

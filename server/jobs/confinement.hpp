@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What keeps a worker, which reads strangers' files, from everything but its own job. Prepared before the fork; applied
-// in the child by system calls alone. Each measure the kernel has is taken, the others are left out, and which is
-// known.
+// Restricts a worker, which reads untrusted files, to its own job. Prepared before the fork; applied in the child by
+// system calls alone. Measures that the kernel does not have are left out; apply() says which hold.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +38,7 @@ class Confinement {
   const SystemCallFilter* filter_;
 };
 
-/// Tries every measure in a child: names of those that hold here.
+/// The names of the measures that hold on this machine, tried in a child.
 [[nodiscard]] std::vector<std::string> active_measures(const ConfinementOptions& options);
 
 /// Names of all there are.

@@ -10,7 +10,7 @@
 
 namespace sheaf::server {
 
-/// What has happened since the start; only ever grows.
+/// Counts since the start; they only grow.
 struct Counters {
   std::atomic<std::uint64_t> jobs_accepted{0}, frames_rendered{0};
   std::array<std::atomic<std::uint64_t>, 5> jobs_ended{};  // by JobState

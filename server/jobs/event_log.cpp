@@ -14,22 +14,22 @@ void EventLog::publish(const std::vector<Event>& events, bool last) {
   if (closed_) return;
   events_.insert(events_.end(), events.begin(), events.end());
   closed_ = last;
-  tell_all();
+  notify_watchers();
 }
 
 void EventLog::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;
-  tell_all();
+  notify_watchers();
 }
 
 void EventLog::interrupt() {
   const std::lock_guard lock(mutex_);
   interrupted_ = true;
-  tell_all();
+  notify_watchers();
 }
 
-void EventLog::tell_all() const {
+void EventLog::notify_watchers() const {
   changed_.notify_all();
   for (const auto& [number, wake] : watches_) wake();
 }

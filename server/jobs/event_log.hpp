@@ -23,7 +23,7 @@ struct Event {
   WallTime time;
 };
 
-/// Events on their way into a log: numbered, but not yet to be seen.
+/// Events to be added to a log: numbered, not yet visible.
 class NewEvents {
  public:
   explicit NewEvents(std::uint64_t last) : last_(last) {}
@@ -38,14 +38,14 @@ class NewEvents {
   bool closed_ = false;
 };
 
-/// What happened to one job, in order; kept whole, so that a client that comes late or back misses nothing.
+/// All events of one job, in order; kept, so that a client that connects late or again misses none.
 /// Safe to use from several threads.
 class EventLog {
  public:
   EventLog() = default;
   EventLog(std::vector<Event> earlier, bool closed) : events_(std::move(earlier)), closed_(closed) {}
 
-  /// Shows them, and that they were the last. Nothing is added after that.
+  /// Makes `events` visible; `last`: no event will follow.
   void publish(const std::vector<Event>& events, bool last);
 
   /// The job has ended or was removed: no event will follow.
@@ -65,13 +65,13 @@ class EventLog {
   /// `wake` is called, under the log's lock, whenever wait() would return; until the result is gone.
   [[nodiscard]] std::shared_ptr<void> watch(std::function<void()> wake) const;
 
-  /// Lets every wait() return now and from now on: the service stops.
+  /// Every wait() returns now and from now on: the service stops.
   void interrupt();
   [[nodiscard]] bool interrupted() const;
   [[nodiscard]] std::uint64_t size() const;
 
  private:
-  void tell_all() const;
+  void notify_watchers() const;
   [[nodiscard]] Batch read_locked(std::uint64_t after, std::size_t most) const;
 
   mutable std::mutex mutex_;

@@ -79,7 +79,7 @@ std::uint64_t adopt_frames(JobStore& store, const JobFiles& files, const std::st
       found.push_back(std::move(frame));
       continue;
     }
-    // A worker that resumes would take the frame for done, and never make its preview.
+    // A worker that resumes would take the frame as done, and never write its preview.
     std::error_code ignored;
     fs::remove(folder / frame.exr->name, ignored);
   }
@@ -88,7 +88,7 @@ std::uint64_t adopt_frames(JobStore& store, const JobFiles& files, const std::st
     for (const Frame& frame : found) put_frame(stored, frame, events);
     stored.fruitless_starts = 0;
   });
-  write_log(LogLevel::info, "frames taken in", {{"job", id}, {"frames", found.size()}});
+  write_log(LogLevel::info, "frames adopted", {{"job", id}, {"frames", found.size()}});
   return found.size();
 }
 

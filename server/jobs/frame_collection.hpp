@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a job has, told from its files: after a crash of worker, service or machine the files are the truth.
+// The frames of a job, found by its files: after a crash of worker, service or machine the files decide.
 #pragma once
 
 #include "jobs/job.hpp"
@@ -8,10 +8,10 @@
 
 namespace sheaf::server {
 
-/// Takes in frames that are there whole and were not reported (their worker died between the two). Returns how many.
+/// Records frames that are complete on the disk and were not reported (their worker died in between). Returns how many.
 std::uint64_t adopt_frames(JobStore& store, const JobFiles& files, const std::string& id);
 
-/// Drops recorded frames whose files are not what they were, so that they are rendered again; then adopts.
+/// Drops recorded frames whose files have changed, so that they are rendered again; then adopts.
 void verify_frames(JobStore& store, const JobFiles& files, const std::string& id);
 
 }  // namespace sheaf::server

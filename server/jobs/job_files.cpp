@@ -80,12 +80,12 @@ void JobFiles::accept(const std::string& id) const {
   sync(data_ / "jobs", O_DIRECTORY);
 }
 
-void JobFiles::remove_strangers(const std::function<bool(const std::string& id)>& known) const {
-  std::vector<std::string> strangers;
+void JobFiles::remove_orphan_folders(const std::function<bool(const std::string& id)>& known) const {
+  std::vector<std::string> orphans;
   for (const fs::directory_entry& entry : fs::directory_iterator(data_ / "jobs"))
     if (is_id(entry.path().filename().string()) && !known(entry.path().filename().string()))
-      strangers.push_back(entry.path().filename().string());
-  for (const std::string& id : strangers) remove(id);
+      orphans.push_back(entry.path().filename().string());
+  for (const std::string& id : orphans) remove(id);
 }
 
 void JobFiles::remove(const std::string& id) const noexcept {
@@ -102,7 +102,7 @@ std::uint64_t JobFiles::free_bytes() const {
   return error ? 0 : space.available;
 }
 
-std::optional<std::string> JobFiles::write_trouble() const {
+std::optional<std::string> JobFiles::write_error() const {
   const fs::path path = data_ / "incoming" / ("." + random_id());
   const Fd fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   int error = fd.valid() ? 0 : errno;

@@ -33,8 +33,8 @@ class JobFiles {
   /// Makes a received upload a job's folder. Everything is on the disk when this returns.
   void accept(const std::string& id) const;
 
-  /// Removes the folders of jobs that `known` does not know: half accepted or half removed when the service ended.
-  void remove_strangers(const std::function<bool(const std::string& id)>& known) const;
+  /// Removes job folders without a job (`known` is false): submission or removal was interrupted by the service's end.
+  void remove_orphan_folders(const std::function<bool(const std::string& id)>& known) const;
 
   /// Removes the job's folder and upload; what cannot be removed is logged.
   void remove(const std::string& id) const noexcept;
@@ -42,7 +42,7 @@ class JobFiles {
   [[nodiscard]] std::uint64_t free_bytes() const;
 
   /// Why a file of a few KiB cannot be written here now; nothing if it can.
-  [[nodiscard]] std::optional<std::string> write_trouble() const;
+  [[nodiscard]] std::optional<std::string> write_error() const;
 
   [[nodiscard]] const std::filesystem::path& data() const { return data_; }
 

@@ -14,7 +14,7 @@ namespace sheaf::server {
 namespace {
 
 std::uint64_t missing_frames(const Job& job) {
-  const std::uint64_t wanted = job.total.value_or(1);  // a worker that never said how many has made one at least
+  const std::uint64_t wanted = job.total.value_or(1);  // without a start event at least one frame is expected
   return wanted > job.frames_done ? wanted - job.frames_done : 0;
 }
 
@@ -39,7 +39,7 @@ void JobRunner::run(const std::string& id, const StopSwitch& stop) const noexcep
       if (!job) return;
       const Next next = attempt(*job, stop);
       if (next == Next::ended || next == Next::queued) return;
-      if (next == Next::when_disk_is_well && !wait_for_disk(stop)) return;
+      if (next == Next::when_disk_is_writable && !wait_for_disk(stop)) return;
     }
   } catch (const std::exception& error) {
     write_log(LogLevel::error, "job failed", {{"job", id}, {"reason", error.what()}});
@@ -47,7 +47,7 @@ void JobRunner::run(const std::string& id, const StopSwitch& stop) const noexcep
   }
 }
 
-/// The start is counted before it is made: what ends the whole service must not be tried for ever either.
+/// The start is counted beforehand, so that a job that brings the whole service down is not tried for ever.
 std::optional<Job> JobRunner::begin(const std::string& id, bool again) const {
   std::optional<Job> job;
   store_.update(id, [&](Job& stored, NewEvents& events) {
@@ -81,7 +81,7 @@ Ending JobRunner::run_worker_of(const Job& job, const StopSwitch& stop) const {
 /// False if the job is to be stopped first.
 bool JobRunner::wait_for_disk(const StopSwitch& stop) const {
   pollfd switched{stop.fd(), POLLIN, 0};
-  while (!stop.asked() && !disk_is_well_())
+  while (!stop.asked() && !disk_is_writable_())
     ::poll(&switched, 1, static_cast<int>(std::chrono::milliseconds(disk_interval).count()));
   return !stop.asked();
 }
@@ -95,22 +95,23 @@ JobRunner::Next JobRunner::attempt(const Job& job, const StopSwitch& stop) const
   counters_.work.add(files_.stats(job.id));
   if (ending.worker.exit_code != 0) adopt_frames(store_, files_, job.id);
 
-  const bool full = ending.worker.exit_code == exit_storage && !disk_is_well_();
-  // Read last: a client may have asked to cancel until now.
+  const bool full = ending.worker.exit_code == exit_storage && !disk_is_writable_();
+  // Read in the same step as the state changes: a client may ask to cancel until then.
   Outcome outcome;
   Next next = Next::ended;
   const bool there = store_.update(job.id, [&](Job& stored, NewEvents& events) {
     ending.cancel_requested = stored.cancel_requested;
     ending.missing = missing_frames(stored);
     outcome = outcome_of(ending);
-    if (outcome.state == JobState::failed && (stop.asked() || full)) {  // the service stops, or nobody could go on
-      next = stop.asked() ? Next::queued : Next::when_disk_is_well;
+    if (outcome.state == JobState::failed && (stop.asked() || full)) {  // the service stops, or the disk is full
+      next = stop.asked() ? Next::queued : Next::when_disk_is_writable;
       if (full)
-        events.append("warning", {{"message", outcome.failure->message + "; it goes on when the disk is well"}});
+        events.append("warning",
+                      {{"message", outcome.failure->message + "; it continues when the disk can be written"}});
       if (stored.fruitless_starts > 0) --stored.fruitless_starts;
       return requeue_job(stored, events);
     }
-    if (outcome.state == JobState::failed && is_passing(ending) && stored.fruitless_starts < options_.attempts) {
+    if (outcome.state == JobState::failed && is_transient(ending) && stored.fruitless_starts < options_.attempts) {
       next = Next::again;
       events.append("warning", {{"message", outcome.failure->message + "; it is started again"}});
       return;
@@ -118,7 +119,7 @@ JobRunner::Next JobRunner::attempt(const Job& job, const StopSwitch& stop) const
     finish_job(stored, events, outcome.state, outcome.failure, options_.retention);
   });
   if (!there) return Next::ended;  // removed meanwhile
-  if (next == Next::again || next == Next::when_disk_is_well) ++counters_.workers_tried_again;
+  if (next == Next::again || next == Next::when_disk_is_writable) ++counters_.workers_tried_again;
   if (next == Next::ended) counters_.ended(outcome.state);
   const char* const state = next == Next::ended ? name_of(outcome.state) : next == Next::again ? "running" : "queued";
   write_log(LogLevel::info, "worker ended",

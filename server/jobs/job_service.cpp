@@ -14,10 +14,10 @@ namespace sheaf::server {
 namespace {
 
 constexpr auto janitor_interval = std::chrono::seconds(1);
-constexpr std::size_t inspections_at_once = 4;  // each may take a worker's memory
+constexpr std::size_t inspections_at_once = 4;  // each may use as much memory as a worker
 
 [[noreturn]] void refuse_busy() {
-  throw Problem(ProblemKind::busy, "many scenes are being looked into already").header("Retry-After", "1");
+  throw Problem(ProblemKind::busy, "too many scenes are being inspected at once").header("Retry-After", "1");
 }
 
 }  // namespace
@@ -26,10 +26,10 @@ JobService::JobService(ServiceOptions options, JobStore& store, const JobFiles& 
     : options_(std::move(options)),
       store_(store),
       files_(files),
-      runner_(options_.runner, store, files, counters_, [this] { return !disk_trouble(); }),
+      runner_(options_.runner, store, files, counters_, [this] { return !disk_error(); }),
       inspector_(options_.runner.sheaf, options_.runner.confinement, options_.limits, inspections_at_once) {
-  queue_ =
-      std::make_unique<JobQueue>(runner_, options_.jobs_at_once, [this](const std::string& id) { worker_gone(id); });
+  queue_ = std::make_unique<JobQueue>(runner_, options_.jobs_at_once,
+                                      [this](const std::string& id) { on_worker_ended(id); });
   janitor_ = std::thread([this] {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, janitor_interval, [this] { return stopping_.load(); })) {
@@ -56,85 +56,86 @@ void JobService::shut_down() {
 
 void JobService::check_capacity() const {
   check_room();
-  if (places_taken_ >= options_.most_submissions) refuse_busy();
+  if (admitted_ >= options_.max_submissions) refuse_busy();
 }
 
-JobService::Place JobService::take_place(const Job& job) {
-  const std::size_t others = places_taken_++;
-  Place place(nullptr, [this](std::nullptr_t) { --places_taken_; });
-  if (others < options_.most_submissions) return place;
+JobService::AdmissionTicket JobService::admit(const Job& job) {
+  const std::size_t others = admitted_++;
+  AdmissionTicket ticket(nullptr, [this](std::nullptr_t) { --admitted_; });
+  if (others < options_.max_submissions) return ticket;
   files_.remove(job.id);
   refuse_busy();
 }
 
-/// Whether the queue and the disk have room for a job.
+/// Throws Problem (503) unless the queue and the disk have room for a job.
 void JobService::check_room() const {
-  if (stopping_) throw Problem(ProblemKind::shutting_down, "no new job is taken").header("Retry-After", "5");
+  if (stopping_) throw Problem(ProblemKind::shutting_down, "no new job is accepted").header("Retry-After", "5");
   const std::uint64_t waiting = queue_->waiting();
   if (waiting >= options_.limits.queued_jobs)
     throw Problem(ProblemKind::queue_full, std::to_string(waiting) + " jobs are waiting, the limit is " +
                                                std::to_string(options_.limits.queued_jobs))
         .header("Retry-After", "10")
-        .passed("max-queue", options_.limits.queued_jobs, waiting);
-  if (const auto trouble = store_.trouble()) throw Problem(ProblemKind::storage, *trouble).header("Retry-After", "30");
+        .exceeded("max-queue", options_.limits.queued_jobs, waiting);
+  if (const auto reason = store_.write_error())
+    throw Problem(ProblemKind::storage, *reason).header("Retry-After", "30");
   const std::uint64_t free = files_.free_bytes();
-  if (free < options_.least_free_bytes)
+  if (free < options_.min_free_bytes)
     throw Problem(ProblemKind::storage, "the disk has " + std::to_string(free >> 20) +
-                                            " MiB left, jobs are taken from " +
-                                            std::to_string(options_.least_free_bytes >> 20) + " MiB on")
+                                            " MiB free, jobs are accepted from " +
+                                            std::to_string(options_.min_free_bytes >> 20) + " MiB on")
         .header("Retry-After", "60")
-        .passed("min-free", options_.least_free_bytes, free);
+        .exceeded("min-free", options_.min_free_bytes, free);
 }
 
-JobService::Fitness JobService::fitness() {
-  Fitness fitness;
-  if (stopping_) fitness.queue = "the service is stopping";
+JobService::Readiness JobService::readiness() {
+  Readiness readiness;
+  if (stopping_) readiness.queue = "the service is stopping";
   const std::uint64_t waiting = queue_->waiting(), limit = options_.limits.queued_jobs;
-  queue_was_full_ = waiting >= limit || (queue_was_full_ && waiting + std::max<std::uint64_t>(1, limit / 10) > limit);
-  if (queue_was_full_)
-    fitness.queue = std::to_string(waiting) + " jobs are waiting, the limit is " + std::to_string(limit);
-  if (const auto trouble = disk_trouble()) fitness.disk = *trouble;
-  return fitness;
+  queue_full_ = waiting >= limit || (queue_full_ && waiting + std::max<std::uint64_t>(1, limit / 10) > limit);
+  if (queue_full_)
+    readiness.queue = std::to_string(waiting) + " jobs are waiting, the limit is " + std::to_string(limit);
+  if (const auto reason = disk_error()) readiness.disk = *reason;
+  return readiness;
 }
 
-/// Why nothing should be written now; nothing if it can be.
-std::optional<std::string> JobService::disk_trouble() {
-  if (auto trouble = store_.trouble()) return trouble;
-  if (auto trouble = files_.write_trouble()) return trouble;
-  const std::uint64_t free = files_.free_bytes(), least = options_.least_free_bytes;
-  disk_was_low_ = free < least || (disk_was_low_ && free < least + least / 10);
-  if (!disk_was_low_) return std::nullopt;
-  return "the disk has " + std::to_string(free >> 20) + " MiB left, jobs are taken from " +
+/// Why no job should write now; nothing if it may.
+std::optional<std::string> JobService::disk_error() {
+  if (auto reason = store_.write_error()) return reason;
+  if (auto reason = files_.write_error()) return reason;
+  const std::uint64_t free = files_.free_bytes(), least = options_.min_free_bytes;
+  disk_low_ = free < least || (disk_low_ && free < least + least / 10);
+  if (!disk_low_) return std::nullopt;
+  return "the disk has " + std::to_string(free >> 20) + " MiB free, jobs are accepted from " +
          std::to_string(least >> 20) + " MiB on";
 }
 
-void JobService::recover(bool fresh) {
-  if (!fresh)
-    files_.remove_strangers([this](const std::string& id) { return store_.presence(id) == Presence::present; });
-  std::size_t taken_up = 0;
+void JobService::recover(bool new_store) {
+  if (!new_store)
+    files_.remove_orphan_folders([this](const std::string& id) { return store_.presence(id) == Presence::present; });
+  std::size_t resumed = 0;
   for (const std::string& id : store_.unfinished()) {
-    if (!take_up(id)) continue;
+    if (!resume_job(id)) continue;
     queue_->add(id);
-    ++taken_up;
+    ++resumed;
   }
-  if (taken_up > 0) write_log(LogLevel::info, "jobs taken up", {{"jobs", taken_up}});
+  if (resumed > 0) write_log(LogLevel::info, "unfinished jobs queued again", {{"jobs", resumed}});
 }
 
-/// A job of an earlier run: back into the queue if it can still be rendered.
-bool JobService::take_up(const std::string& id) {
+/// Whether an unfinished job of an earlier run is to be queued again; one that cannot be rendered is ended.
+bool JobService::resume_job(const std::string& id) {
   bool wanted = false;
   const std::optional<Job> job = store_.find(id);
   if (!job) return false;
   std::error_code error;
   const bool whole = std::filesystem::exists(files_.scene(id) / job->scene_file, error);
-  const bool tired = job->fruitless_starts >= options_.runner.attempts;
-  // Nothing to be written: a sync for each would keep a service with a long queue from answering.
-  if (job->state == JobState::queued && !job->cancel_requested && whole && !tired) return true;
+  const bool attempts_exhausted = job->fruitless_starts >= options_.runner.attempts;
+  // Nothing is written: one sync per job would delay a service with a long queue.
+  if (job->state == JobState::queued && !job->cancel_requested && whole && !attempts_exhausted) return true;
   const std::chrono::seconds retention = options_.runner.retention;
   store_.update(id, [&](Job& stored, NewEvents& events) {
     if (stored.cancel_requested) return finish_job(stored, events, JobState::cancelled, std::nullopt, retention);
     if (!whole) return finish_job(stored, events, JobState::failed, outcome_of_lost_files().failure, retention);
-    if (tired)
+    if (attempts_exhausted)
       return finish_job(stored, events, JobState::failed, outcome_of_too_many_starts(stored.fruitless_starts).failure,
                         retention);
     wanted = true;
@@ -192,7 +193,7 @@ std::shared_ptr<EventLog> JobService::events(const std::string& id) const {
   return events;
 }
 
-/// False if there is nothing to be done: the job has ended, or was asked before.
+/// False if the job was asked to stop before.
 bool JobService::ask_to_stop(Job& job, NewEvents& events) {
   if (job.cancel_requested) return false;
   job.cancel_requested = true;
@@ -205,7 +206,7 @@ bool JobService::ask_to_stop(Job& job, NewEvents& events) {
 
 Job JobService::cancel(const std::string& id) {
   const bool there = store_.update(
-      id, [&](Job& job, NewEvents& events) { ask_to_stop(job, events); }, IfUnstored::refuse);
+      id, [&](Job& job, NewEvents& events) { ask_to_stop(job, events); }, OnWriteError::refuse);
   if (there) {
     queue_->forget(id);
     queue_->stop_worker(id, false);
@@ -222,7 +223,7 @@ std::optional<Job> JobService::cancel_or_remove(const std::string& id) {
         asked = ask_to_stop(stored, events);
         job = stored;
       },
-      IfUnstored::refuse);
+      OnWriteError::refuse);
   if (!asked) {
     remove(id, "was removed");
     return std::nullopt;
@@ -232,7 +233,7 @@ std::optional<Job> JobService::cancel_or_remove(const std::string& id) {
   return job;
 }
 
-/// The files of a job whose worker still runs go when the worker has gone.
+/// The files of a job whose worker still runs are removed when the worker has ended.
 void JobService::remove(const std::string& id, const std::string& reason) {
   if (!store_.remove(id, reason)) refuse_missing(id);
   queue_->forget(id);
@@ -241,7 +242,7 @@ void JobService::remove(const std::string& id, const std::string& reason) {
   write_log(LogLevel::info, "job removed", {{"job", id}, {"reason", reason}});
 }
 
-void JobService::worker_gone(const std::string& id) {
+void JobService::on_worker_ended(const std::string& id) {
   if (store_.presence(id) != Presence::present) files_.remove(id);
 }
 
@@ -256,9 +257,10 @@ void JobService::remove_expired() {
     }
   };
   try {
-    (void)store_.trouble();  // stores what could not be stored
+    (void)store_.write_error();  // writes what could not be written before
     remove_all(store_.expired(std::chrono::system_clock::now()), "has expired");
-    if (options_.kept_bytes > 0) remove_all(store_.beyond(options_.kept_bytes), "was removed to make room for others");
+    if (options_.kept_bytes > 0)
+      remove_all(store_.over_quota(options_.kept_bytes), "was removed to make room for others");
   } catch (const std::exception& error) {
     write_log(LogLevel::error, "cannot remove expired jobs", {{"reason", error.what()}});
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the routes can do with jobs: submit, look, cancel, remove, watch; and what happens by itself: running, expiry.
+// What the routes can do with jobs (submit, read, cancel, remove, watch) and what happens without them (running,
+// expiry).
 #pragma once
 
 #include <atomic>
@@ -20,11 +21,11 @@ namespace sheaf::server {
 
 struct ServiceOptions {
   RunnerOptions runner;
-  std::uint64_t kept_bytes = 0;  // of all jobs: beyond it, ended ones go, the earliest first; 0: no limit
+  std::uint64_t kept_bytes = 0;  // of all jobs: above it, the jobs that ended first are removed; 0: no limit
   Limits limits;
   std::size_t jobs_at_once = 1;
-  std::size_t most_submissions = 16;  // that are looked into and stored, each on a thread for requests
-  std::uint64_t least_free_bytes = std::uint64_t{256} << 20;  // no new job is taken with less disk than this
+  std::size_t max_submissions = 16;  // being inspected and stored at once, each on an HTTP thread
+  std::uint64_t min_free_bytes = std::uint64_t{256} << 20;  // with less free disk no job is accepted
 };
 
 class JobService {
@@ -34,35 +35,35 @@ class JobService {
   JobService(const JobService&) = delete;
   JobService& operator=(const JobService&) = delete;
 
-  /// Throws Problem (503) if no job can be taken now: asked before an upload is read, so that none is read in vain, and
-  /// again at its end.
+  /// Throws Problem (503) if no job can be accepted now. Called before an upload is read, so that none is read in vain,
+  /// and again at its end.
   void check_capacity() const;
 
-  /// To be held from an upload's end until its answer: looking into a scene and syncing it keep a thread waiting, and
-  /// a bounded number of them leaves threads for requests that wait for nothing. Throws Problem (503); then the upload
-  /// that was received under `job.id` is gone.
-  using Place = std::shared_ptr<void>;
-  [[nodiscard]] Place take_place(const Job& job);
+  /// Held from an upload's end until its answer. Inspecting and syncing a scene block a thread; a bounded number of
+  /// tickets leaves threads for requests that do not block. Throws Problem (503); then the upload that was received
+  /// under `job.id` is removed.
+  using AdmissionTicket = std::shared_ptr<void>;
+  [[nodiscard]] AdmissionTicket admit(const Job& job);
 
-  /// "ok" or the reason why no job should be sent here. What failed once must be well again by a margin: a service at
-  /// its limit does not change its mind with every job.
-  struct Fitness {
+  /// "ok" or the reason why no job should be sent here. After a failure, "ok" needs a margin, so that the answer of a
+  /// service at its limit does not change with every job (hysteresis).
+  struct Readiness {
     std::string disk = "ok", queue = "ok";
   };
-  [[nodiscard]] Fitness fitness();
+  [[nodiscard]] Readiness readiness();
 
-  /// Takes up the jobs of an earlier run. To be called once, before the first request. `fresh`: the store is new, so
-  /// that folders it does not know need not be rubbish.
-  void recover(bool fresh);
+  /// Queues the unfinished jobs of an earlier run. To be called once, before the first request. With a new store (whose
+  /// database may have been lost) folders that it does not know are kept.
+  void recover(bool new_store);
 
-  /// Looks into an upload that was received under `job.id`. Throws Problem (422) if the scene passes a limit; then the
-  /// upload is gone.
+  /// Inspects an upload that was received under `job.id`. Throws Problem (422) if the scene exceeds a limit; then the
+  /// upload is removed.
   void inspect(const Job& job);
 
-  /// Takes an upload that was received under `job.id`. On `repeated` and `conflict` the upload is thrown away.
+  /// Accepts an upload that was received under `job.id`. On `repeated` and `conflict` the upload is removed.
   Submitted submit(Job job, const Idempotency& idempotency, const std::string& request);
 
-  /// Throws Problem: 404, or 410 for a job that was there.
+  /// Throws Problem: 404, or 410 for a job that was removed.
   [[nodiscard]] Job get(const std::string& id) const;
   [[nodiscard]] std::shared_ptr<EventLog> events(const std::string& id) const;
 
@@ -74,7 +75,7 @@ class JobService {
   /// nothing. Throws Problem: 404, 410.
   std::optional<Job> cancel_or_remove(const std::string& id);
 
-  /// Takes no more jobs, lets watchers go, stops the workers.
+  /// Accepts no more jobs, ends event streams, stops the workers.
   void shut_down();
 
   [[nodiscard]] const JobStore& store() const { return store_; }
@@ -86,12 +87,12 @@ class JobService {
 
  private:
   void check_room() const;
-  [[nodiscard]] std::optional<std::string> disk_trouble();
+  [[nodiscard]] std::optional<std::string> disk_error();
   bool ask_to_stop(Job& job, NewEvents& events);
-  bool take_up(const std::string& id);
+  bool resume_job(const std::string& id);
   [[noreturn]] void refuse_missing(const std::string& id) const;
   void remove(const std::string& id, const std::string& reason);
-  void worker_gone(const std::string& id);
+  void on_worker_ended(const std::string& id);
   void remove_expired();
 
   ServiceOptions options_;
@@ -100,8 +101,8 @@ class JobService {
   Counters counters_;
   JobRunner runner_;
   SceneInspector inspector_;
-  std::atomic<std::size_t> places_taken_{0};
-  std::atomic<bool> stopping_{false}, queue_was_full_{false}, disk_was_low_{false};
+  std::atomic<std::size_t> admitted_{0};
+  std::atomic<bool> stopping_{false}, queue_full_{false}, disk_low_{false};
   std::mutex mutex_;
   std::condition_variable stopped_;
   std::unique_ptr<JobQueue> queue_;

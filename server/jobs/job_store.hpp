@@ -38,9 +38,9 @@ struct JobPage {
 
 enum class Presence { unknown, present, removed };
 
-/// What to do with a change that cannot be stored now. `keep`: it holds as long as the process does, and is stored as
-/// soon as that works again (a worker's news, which cannot be taken back). `refuse`: Error{io}, and nothing changes.
-enum class IfUnstored { keep, refuse };
+/// What to do with a change that cannot be written now. `keep`: it stays in memory and is written as soon as possible
+/// (a worker's results, which cannot be undone). `refuse`: Error{io}, and nothing changes.
+enum class OnWriteError { keep, refuse };
 
 class JobStore {
  public:
@@ -61,24 +61,24 @@ class JobStore {
   /// Runs `change` on an unfinished job, one change at a time; false if it is not there or has ended. `change` may add
   /// to `events`.
   using Change = std::function<void(Job& job, NewEvents& events)>;
-  virtual bool update(const std::string& id, const Change& change, IfUnstored unstored = IfUnstored::keep) = 0;
+  virtual bool update(const std::string& id, const Change& change, OnWriteError on_error = OnWriteError::keep) = 0;
 
   /// The job's events: shared, and still readable after the job was removed.
   [[nodiscard]] virtual std::shared_ptr<EventLog> events(const std::string& id) const = 0;
 
-  /// Takes the job out and remembers that it was there. False if it is not there.
+  /// Removes the job and remembers that it existed. False if there is no such job.
   virtual bool remove(const std::string& id, const std::string& reason) = 0;
 
-  /// Jobs whose time is over at `now`.
+  /// Jobs whose retention has ended at `now`.
   [[nodiscard]] virtual std::vector<std::string> expired(WallTime now) const = 0;
 
-  /// Ended jobs, the earliest first, without which the kept ones have at most `bytes`.
-  [[nodiscard]] virtual std::vector<std::string> beyond(std::uint64_t bytes) const = 0;
+  /// The jobs that ended first, as many as must go for the rest to have at most `bytes`.
+  [[nodiscard]] virtual std::vector<std::string> over_quota(std::uint64_t bytes) const = 0;
 
-  /// Why nothing can be stored; nothing if all is well. Tries again to store what could not be.
-  virtual std::optional<std::string> trouble() = 0;
+  /// Why nothing can be written; nothing if it can. Writes what could not be written before.
+  virtual std::optional<std::string> write_error() = 0;
 
-  /// Lets everybody who waits for events go: the service stops.
+  /// Wakes everybody who waits for events: the service stops.
   virtual void interrupt_waits() = 0;
 };
 

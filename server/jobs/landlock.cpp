@@ -27,7 +27,7 @@ constexpr std::uint64_t refer = 1 << 13, truncate = 1 << 14;
 constexpr std::uint64_t of_files = execute | write_file | read_file | truncate;
 constexpr std::uint64_t to_read = execute | read_file | read_folder;
 
-/// All accesses to files that this version knows, but control of devices (bit 15): drivers live by it.
+/// All accesses to files that this version knows, except control of devices (bit 15), which drivers need.
 std::uint64_t accesses_of(long version) {
   std::uint64_t accesses = (1 << 13) - 1;
   if (version >= 2) accesses |= refer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Landlock (Linux 5.13 and later): which files a process may read and write from now on, whatever its user may. The
-// kernel's interface is spelled out here, because the headers that distributions have know less than their kernels.
+// Landlock (Linux 5.13 and later): restricts which files a process may read and write from now on. The kernel's
+// interface is declared in landlock.cpp, because the distributions' headers are older than the kernels they may run on.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ class FileRules {
   FileRules();
   [[nodiscard]] bool available() const { return ruleset_.valid(); }
 
-  /// The file, or the folder and all below; nothing happens if it is not there.
+  /// The file, or the folder and everything below it; one that does not exist is ignored.
   void allow_reading(const std::string& path);
   void allow_writing(const std::string& path);
 
   [[nodiscard]] Fd take() { return std::move(ruleset_); }
 
-  /// For this process and its children, for good. Async-signal-safe; wants no_new_privs.
+  /// For this process and its children, for good. Async-signal-safe; requires no_new_privs.
   [[nodiscard]] static bool enforce(int ruleset) noexcept;
 
  private:

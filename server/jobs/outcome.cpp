@@ -35,7 +35,7 @@ Failure failure(Row row, const std::string& message) { return {row.code, row.tit
 }  // namespace
 
 Outcome outcome_of(const Ending& ending) {
-  // Whatever a worker did after it was told to stop, the client asked for this end.
+  // The client asked for this end, whatever the worker did after it was told to stop.
   if (ending.cancel_requested) return {JobState::cancelled, std::nullopt};
 
   if (ending.worker.timed_out)
@@ -55,7 +55,7 @@ Outcome outcome_of(const Ending& ending) {
   if (code == 0 && ending.missing == 0) return {JobState::done, std::nullopt};
   if (code == 0) {
     Failure reason = failure({"incomplete", "The worker left frames out"},
-                             "the worker ended well, but " + std::to_string(ending.missing) + " frames are not there");
+                             "the worker succeeded, but " + std::to_string(ending.missing) + " frames are missing");
     reason.exit_code = code;
     return {JobState::failed, reason};
   }
@@ -65,7 +65,7 @@ Outcome outcome_of(const Ending& ending) {
   return {JobState::failed, reason};
 }
 
-bool is_passing(const Ending& ending) {
+bool is_transient(const Ending& ending) {
   if (ending.worker.timed_out) return false;
   if (ending.worker.signal) {
     const int number = *ending.worker.signal;
@@ -76,13 +76,13 @@ bool is_passing(const Ending& ending) {
 }
 
 Outcome outcome_of_too_many_starts(std::uint64_t starts) {
-  return {JobState::failed, failure({"interrupted", "The worker was interrupted"},
-                                    "the worker was started " + std::to_string(starts) +
-                                        " times without a new frame, and never came to an end")};
+  return {JobState::failed,
+          failure({"interrupted", "The worker was interrupted"}, "the worker was started " + std::to_string(starts) +
+                                                                     " times without a new frame, and did not finish")};
 }
 
 Outcome outcome_of_lost_files() {
-  return {JobState::failed, failure({"storage", "Reading or writing failed"}, "the scene is gone from the disk")};
+  return {JobState::failed, failure({"storage", "Reading or writing failed"}, "the scene is no longer on the disk")};
 }
 
 Outcome outcome_of_no_start(const std::string& reason) {

@@ -18,7 +18,7 @@ struct Ending {
   std::chrono::seconds wall{0};  // its limits
   std::uint64_t cpu_seconds = 0;
   bool cancel_requested = false;
-  std::string message;        // the worker's last word: its error event, else its last log line
+  std::string message;        // the worker's error event, else its last log line
   std::uint64_t missing = 0;  // frames that should be there and are not
 };
 
@@ -32,14 +32,14 @@ struct Outcome {
 
 [[nodiscard]] Outcome outcome_of(const Ending& ending);
 
-/// The end may well have had nothing to do with the job: a lost device, a disk that could not be written, or a stop or
-/// kill from outside (as by a kernel that is out of memory). A crash is the scene's own.
-[[nodiscard]] bool is_passing(const Ending& ending);
+/// Another attempt may succeed: a lost device, a disk that could not be written, or a stop or kill from outside (as by
+/// a kernel that is out of memory). A crash is caused by the scene.
+[[nodiscard]] bool is_transient(const Ending& ending);
 
 /// The service or the worker ended too often to try again.
 [[nodiscard]] Outcome outcome_of_too_many_starts(std::uint64_t starts);
 
-/// What the job is rendered from is gone from the disk.
+/// The scene is no longer on the disk.
 [[nodiscard]] Outcome outcome_of_lost_files();
 
 /// The worker could not be started at all.

@@ -7,7 +7,7 @@ namespace sheaf::server {
 namespace {
 
 constexpr std::size_t max_warnings = 200;
-constexpr std::uint64_t max_odd_lines = 100;  // kept of what a worker prints that is no event
+constexpr std::uint64_t max_ignored_lines = 100;  // so many lines that are no events are logged
 
 template <class... Functions>
 struct Overloaded : Functions... {
@@ -25,7 +25,7 @@ StoredFilePtr shared(std::optional<StoredFile> file) {
 void Reporter::line(std::string_view text) {
   const std::optional<WorkerEvent> event = parse_worker_event(text);
   if (!event) {
-    if (++odd_lines_ <= max_odd_lines) log_.line("not an event: " + std::string(text.substr(0, 200)));
+    if (++ignored_lines_ <= max_ignored_lines) log_.line("not an event: " + std::string(text.substr(0, 200)));
     return;
   }
   std::visit(
@@ -35,7 +35,7 @@ void Reporter::line(std::string_view text) {
       *event);
 }
 
-/// The worker counts the frames it is going to render: not those of an earlier attempt.
+/// The worker counts the frames that it will render, without those of an earlier attempt.
 void Reporter::started(const StartEvent& event) {
   store_.update(id_, [&](Job& job, NewEvents& events) {
     if (!job.frames_known) job.total = job.frames_done + event.frames;
@@ -48,7 +48,7 @@ void Reporter::rendered(const FrameEvent& event) {
   Frame frame{event.frame, shared(stored_file(path)),
               shared(stored_file(std::filesystem::path(path).replace_extension(".png"))), event.wall_ms};
   if (!frame.exr || !event.file.ends_with(".exr"))
-    return log_.line("frame " + std::to_string(event.frame) + " was reported, but " + event.file + " is not there");
+    return log_.line("frame " + std::to_string(event.frame) + " was reported, but " + event.file + " is missing");
   store_.update(id_, [&](Job& job, NewEvents& events) {
     if (job.frames_known && !find_frame(job.frames, event.frame))
       return log_.line("frame " + std::to_string(event.frame) + " was not asked for");

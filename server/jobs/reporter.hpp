@@ -12,7 +12,7 @@
 
 namespace sheaf::server {
 
-/// A worker's lines on their way into the job.
+/// Turns a worker's lines into changes of its job.
 class Reporter {
  public:
   Reporter(const std::string& id, JobStore& store, const JobFiles& files, Counters& counters, WorkerLog& log)
@@ -20,7 +20,7 @@ class Reporter {
 
   void line(std::string_view text);
 
-  /// What the worker said it failed of; empty if it did not.
+  /// The message of the worker's error event; empty if there was none.
   [[nodiscard]] const std::string& error() const { return error_; }
 
  private:
@@ -34,7 +34,7 @@ class Reporter {
   Counters& counters_;
   WorkerLog& log_;
   std::string error_;
-  std::uint64_t odd_lines_ = 0;
+  std::uint64_t ignored_lines_ = 0;
 };
 
 }  // namespace sheaf::server

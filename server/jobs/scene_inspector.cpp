@@ -13,18 +13,18 @@
 namespace sheaf::server {
 namespace {
 
-constexpr std::size_t most_output = std::size_t{1} << 20;  // facts are a few KB; names in a scene may make them longer
-constexpr int exit_limit = 5;                              // `sheaf`: a limit was exceeded
+constexpr std::size_t max_output = std::size_t{1} << 20;  // facts are a few KB; names in a scene may make them longer
+constexpr int exit_limit = 5;                             // `sheaf`: a limit was exceeded
 
-void bound(const nlohmann::json& facts, const char* fact, const char* name, std::uint64_t limit,
-           const std::string& what) {
+void check_limit(const nlohmann::json& facts, const char* fact, const char* name, std::uint64_t limit,
+                 const std::string& what) {
   const auto found = facts.find(fact);
   if (limit == 0 || found == facts.end() || !found->is_number_unsigned()) return;
   const auto value = found->get<std::uint64_t>();
   if (value <= limit) return;
   throw Problem(ProblemKind::limit_exceeded,
                 "scene: " + std::to_string(value) + " " + what + ", the limit is " + std::to_string(limit))
-      .passed(name, limit, value);
+      .exceeded(name, limit, value);
 }
 
 [[noreturn]] void refuse_stopping() {
@@ -38,22 +38,23 @@ std::string error_line(const std::string& log) {
 
 }  // namespace
 
-struct SceneInspector::Found {
+struct SceneInspector::Inspection {
   WorkerEnding ending;
   std::string text, log;  // what it printed; of stderr the beginning
 };
 
-SceneInspector::Found SceneInspector::inspect(const std::filesystem::path& folder, const std::filesystem::path& scene,
-                                              const std::vector<std::string>& arguments) const {
+SceneInspector::Inspection SceneInspector::inspect(const std::filesystem::path& folder,
+                                                   const std::filesystem::path& scene,
+                                                   const std::vector<std::string>& arguments) const {
   ConfinementOptions options = confinement_;
   options.cpu_seconds = std::min<std::uint64_t>(options.cpu_seconds, limits_.inspect_seconds * 8);  // images: 8 threads
   const Confinement confinement(options, sheaf_, folder);
-  Found found;
+  Inspection found;
   const WorkerOutput output{[&](std::string_view line) {
-                              if (found.text.size() < most_output) found.text.append(line).append("\n");
+                              if (found.text.size() < max_output) found.text.append(line).append("\n");
                             },
                             [&](std::string_view bytes) {
-                              if (found.log.size() < most_output) found.log.append(bytes);
+                              if (found.log.size() < max_output) found.log.append(bytes);
                             }};
   const std::chrono::seconds wall(limits_.inspect_seconds);
   std::vector<std::string> command{sheaf_, "inspect", scene.string(), "--json"};
@@ -63,8 +64,8 @@ SceneInspector::Found SceneInspector::inspect(const std::filesystem::path& folde
   return found;
 }
 
-/// Given back at its end.
-SceneInspector::Turn SceneInspector::wait_for_turn() {
+/// The slot is free again when the result is destroyed.
+SceneInspector::Slot SceneInspector::wait_for_slot() {
   std::unique_lock lock(mutex_);
   freed_.wait(lock, [this] { return free_ > 0 || stop_.asked(); });
   if (stop_.asked()) refuse_stopping();
@@ -81,19 +82,19 @@ SceneInspector::Turn SceneInspector::wait_for_turn() {
 void SceneInspector::check(const std::filesystem::path& folder, const std::filesystem::path& scene,
                            const std::vector<std::string>& arguments) {
   if (limits_.triangles == 0 && limits_.texture_bytes == 0) return;
-  const Turn turn = wait_for_turn();
-  Found found;
+  const Slot slot = wait_for_slot();
+  Inspection found;
   try {
     found = inspect(folder, scene, arguments);
   } catch (const Error&) {
-    return;  // it cannot be started: so the job will say as well
+    return;  // it cannot be started: the job will fail with that reason
   }
   if (stop_.asked()) refuse_stopping();
 
   if (found.ending.timed_out || found.ending.signal == SIGXCPU)
     throw Problem(ProblemKind::limit_exceeded, "scene: takes more than " + std::to_string(limits_.inspect_seconds) +
                                                    " s to load, which is the limit")
-        .passed("max-inspect", limits_.inspect_seconds, limits_.inspect_seconds + 1);
+        .exceeded("max-inspect", limits_.inspect_seconds, limits_.inspect_seconds + 1);
   if (found.ending.exit_code == exit_limit) {
     std::string reason = error_line(found.log);
     const std::string hidden = folder.string() + "/";
@@ -103,8 +104,8 @@ void SceneInspector::check(const std::filesystem::path& folder, const std::files
   }
   const auto facts = nlohmann::json::parse(found.text, nullptr, false);
   if (found.ending.exit_code != 0 || !facts.is_object()) return;
-  bound(facts, "triangles", "max-triangles", limits_.triangles, "triangles");
-  bound(facts, "texture_bytes", "max-textures", limits_.texture_bytes, "bytes of decoded images");
+  check_limit(facts, "triangles", "max-triangles", limits_.triangles, "triangles");
+  check_limit(facts, "texture_bytes", "max-textures", limits_.texture_bytes, "bytes of decoded images");
 }
 
 void SceneInspector::interrupt() {

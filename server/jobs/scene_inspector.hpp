@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a scene holds, before its job is taken: `sheaf inspect --json`, confined like any worker and for a bounded time,
-// so that no stranger's file is parsed in this process. Refuses what passes a limit; a scene that is bad in another way
-// is the job's own failure, with the worker's reason.
+// so that no untrusted scene is parsed in this process. Refuses a scene that exceeds a limit; the job of a scene that
+// is bad in another way fails, with the worker's reason.
 #pragma once
 
 #include <atomic>
@@ -33,11 +33,11 @@ class SceneInspector {
   void interrupt();
 
  private:
-  struct Found;
-  using Turn = std::shared_ptr<void>;
-  [[nodiscard]] Turn wait_for_turn();
-  [[nodiscard]] Found inspect(const std::filesystem::path& folder, const std::filesystem::path& scene,
-                              const std::vector<std::string>& arguments) const;
+  struct Inspection;
+  using Slot = std::shared_ptr<void>;
+  [[nodiscard]] Slot wait_for_slot();
+  [[nodiscard]] Inspection inspect(const std::filesystem::path& folder, const std::filesystem::path& scene,
+                                   const std::vector<std::string>& arguments) const;
 
   std::string sheaf_;
   ConfinementOptions confinement_;

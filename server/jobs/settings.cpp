@@ -28,7 +28,7 @@ void refuse_unknown(const json& given) {
 }
 
 /// `key` is what the client wrote: a preset stands for settings that it did not.
-void hold_against_limit(const Given& given, const RenderOptions& options, const Limits& limits, const char* key) {
+void check_limit(const Given& given, const RenderOptions& options, const Limits& limits, const char* key) {
   const SettingLimit* const limit = find_limit(given.setting->limit);
   if (limit == nullptr) return;
   const std::uint64_t value = given.setting->access.amount(options), most = limits.*limit->value;
@@ -36,7 +36,7 @@ void hold_against_limit(const Given& given, const RenderOptions& options, const 
     throw Problem(ProblemKind::limit_exceeded, "settings." + std::string(key) + ": " + std::to_string(value) + " " +
                                                    limit->of + ", the limit is " + std::to_string(most))
         .at(key)
-        .passed(limit->name, most, value);
+        .exceeded(limit->name, most, value);
 }
 
 std::vector<Given> given_in(const json& settings) {
@@ -61,7 +61,7 @@ RenderOptions checked(const std::vector<Given>& given, const json& settings, con
   for (const Given& one : with_presets(given)) {
     const char* const key = settings.contains(one.setting->name) ? one.setting->name : "quality";
     if (const std::string reason = one.setting->access.read(one.text, options); !reason.empty()) refuse(key, reason);
-    hold_against_limit(one, options, limits, key);
+    check_limit(one, options, limits, key);
     const std::string reason = one.setting->access.outside(options, one.setting->range);
     if (!reason.empty()) refuse(key, reason);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What workers say of their work (stats.json), summed since the start: for /metrics.
+// Sums over the workers' stats.json since the start, for /metrics.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ class WorkTotals {
     double peak_device_mib = 0;
   };
 
-  /// Adds a worker's stats; what is not there or not as it should be counts nothing.
+  /// Adds a worker's stats; values that are missing or malformed are ignored.
   void add(const std::filesystem::path& stats);
   [[nodiscard]] Sums sums() const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lines a worker prints with --progress json. A worker is not trusted: what is not a well-formed event is nothing.
+// The lines a worker prints with --progress json. A worker is not trusted: lines that are not
+// well-formed events are ignored.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 
 namespace sheaf::server {
 
-/// A worker's log on its way to the job's log.txt: bounded, and without the service's own paths in it.
+/// Writes a worker's log to the job's log.txt, bounded and without the service's own paths.
 class WorkerLog {
  public:
   /// `hidden`: a path that clients need not know; where it starts a file's path, only the rest is kept.

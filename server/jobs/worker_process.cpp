@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t max_line = 64 * 1024;
 constexpr auto reap_interval = std::chrono::milliseconds(100);  // while the pipes stay open after the exit
-constexpr auto leftover_time = std::chrono::milliseconds(500);  // for output that is still in the pipes then
+constexpr auto drain_time = std::chrono::milliseconds(500);     // for output that is still in the pipes then
 
 struct Pipe {
   Fd read, write;
@@ -40,10 +40,10 @@ Pipe make_pipe() {
 class Worker {
  public:
   Worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
-         const WorkerBounds& bounds)
-      : output_(output), stop_(stop), bounds_(bounds), overdue_(Clock::now() + bounds.wall) {
+         const WorkerLimits& limits)
+      : output_(output), stop_(stop), limits_(limits), deadline_(Clock::now() + limits.wall) {
     Pipe out = make_pipe(), err = make_pipe();
-    pid_ = spawn_worker(command, out.write, err.write, bounds.confinement);
+    pid_ = spawn_worker(command, out.write, err.write, limits.confinement);
     out_ = std::move(out.read);
     err_ = std::move(err.read);
   }
@@ -58,13 +58,13 @@ class Worker {
 
   WorkerEnding run() {
     while (!exited()) {
-      obey();
+      apply_stop_request();
       wait_for_output(Clock::now() + reap_interval);
     }
-    // The leader is not reaped yet, so its group's number is still its own: nobody else is hit.
+    // The leader is not reaped yet, so its process group's id cannot belong to anybody else.
     ::kill(-pid_, SIGKILL);
     const WorkerEnding ending = reap();
-    for (const auto end = Clock::now() + leftover_time; (out_.valid() || err_.valid()) && Clock::now() < end;)
+    for (const auto end = Clock::now() + drain_time; (out_.valid() || err_.valid()) && Clock::now() < end;)
       wait_for_output(end);
     if (!line_.empty()) output_.line(line_);
     return ending;
@@ -85,15 +85,15 @@ class Worker {
     return {WEXITSTATUS(status), std::nullopt, timed_out_};
   }
 
-  void obey() {
-    const bool overdue = bounds_.wall.count() > 0 && Clock::now() >= overdue_;
+  void apply_stop_request() {
+    const bool overdue = limits_.wall.count() > 0 && Clock::now() >= deadline_;
     if ((stop_.asked() || overdue) && !stopping_) {
       timed_out_ = !stop_.asked();
       if (!stop_.forced()) ::kill(-pid_, SIGTERM);
       stopping_ = Clock::now();
     }
     if (!stopping_) return;
-    const auto grace = stop_.cancelled() ? std::min(bounds_.cancel_grace, bounds_.grace) : bounds_.grace;
+    const auto grace = stop_.cancelled() ? std::min(limits_.cancel_grace, limits_.grace) : limits_.grace;
     if (stop_.forced() || Clock::now() >= *stopping_ + grace) ::kill(-pid_, SIGKILL);
   }
 
@@ -102,7 +102,7 @@ class Worker {
     std::array<pollfd, 3> entries{pollfd{out_.get(), POLLIN, 0}, pollfd{err_.get(), POLLIN, 0},
                                   pollfd{watch_stop ? stop_.fd() : -1, POLLIN, 0}};
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-    // With both pipes closed only the exit is awaited, and most often it is near.
+    // With both pipes closed only the exit is awaited, which mostly follows at once.
     const bool soon = !out_.valid() && !err_.valid() && ++waits_for_exit_ < 20;
     const long long most = soon ? std::min<long long>(left, 5) : left;
     if (::poll(entries.data(), entries.size(), static_cast<int>(std::max<long long>(most, 0))) <= 0) return;
@@ -134,8 +134,8 @@ class Worker {
 
   const WorkerOutput& output_;
   const StopSwitch& stop_;
-  const WorkerBounds& bounds_;
-  Clock::time_point overdue_;
+  const WorkerLimits& limits_;
+  Clock::time_point deadline_;
   bool timed_out_ = false;
   pid_t pid_ = 0;
   bool reaped_ = false;
@@ -163,8 +163,8 @@ void StopSwitch::cancel() { raise_to(2); }
 void StopSwitch::force() { raise_to(3); }
 
 WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output, const StopSwitch& stop,
-                        const WorkerBounds& bounds) {
-  return Worker(command, output, stop, bounds).run();
+                        const WorkerLimits& limits) {
+  return Worker(command, output, stop, limits).run();
 }
 
 std::string signal_name(int number) {

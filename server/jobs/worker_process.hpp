@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A worker: a program in its own process group whose standard output is read line by line and whose standard error is
-// a log. Whatever it does (crash, hang, flood, leave children behind), run() ends in bounded time once it was told to
-// stop, and nothing of the group is left.
+// a log. Whatever it does (crash, hang, flood, leave children behind), run_worker() returns in bounded time after a
+// stop request, and no process of the group is left.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ class StopSwitch {
  public:
   StopSwitch();
   void ask();     // SIGTERM, and SIGKILL after the grace period
-  void cancel();  // the same after a shorter one: nobody wants what the worker would finish
+  void cancel();  // the same with a shorter one: the frame in progress is not wanted
   void force();   // SIGKILL
   [[nodiscard]] bool asked() const { return level_ > 0; }
   [[nodiscard]] bool cancelled() const { return level_ > 1; }
@@ -36,7 +36,7 @@ class StopSwitch {
 
 struct WorkerEnding {
   std::optional<int> exit_code, signal;  // one of them
-  bool timed_out = false;                // it was stopped because its time was over
+  bool timed_out = false;                // it was stopped because it ran too long
 };
 
 struct WorkerOutput {
@@ -46,7 +46,7 @@ struct WorkerOutput {
 
 class Confinement;
 
-struct WorkerBounds {
+struct WorkerLimits {
   std::chrono::milliseconds grace{5000};        // from SIGTERM to SIGKILL
   std::chrono::seconds wall{0};                 // how long it may run; 0: any time
   const Confinement* confinement = nullptr;     // none
@@ -55,7 +55,7 @@ struct WorkerBounds {
 
 /// Throws Error{io} if the program cannot be started.
 [[nodiscard]] WorkerEnding run_worker(const std::vector<std::string>& command, const WorkerOutput& output,
-                                      const StopSwitch& stop, const WorkerBounds& bounds);
+                                      const StopSwitch& stop, const WorkerLimits& bounds);
 
 /// "SIGSEGV", or "signal 64".
 [[nodiscard]] std::string signal_name(int number);

@@ -29,7 +29,7 @@ std::size_t raise_file_limit() {
 int print_token(const std::string& wanted) {
   const sheaf::server::NewToken made = sheaf::server::make_token(wanted);
   std::printf("%s\n", made.line.c_str());
-  std::fprintf(stderr, "token, not kept anywhere: %s\n", made.token.c_str());
+  std::fprintf(stderr, "token, not stored anywhere: %s\n", made.token.c_str());
   return 0;
 }
 

@@ -12,7 +12,7 @@
 namespace sheaf::server {
 namespace {
 
-/// The engine installed beside this program, else whatever the PATH has.
+/// The engine installed beside this program, else the one in the PATH.
 std::string default_worker() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -22,7 +22,7 @@ std::string default_worker() {
   return "sheaf";
 }
 
-/// Limits in the units that people give them in.
+/// Limits in the units of the command line.
 struct Given {
   std::string listen = "127.0.0.1:8080";
   std::uint64_t upload_mib = Limits{}.upload_bytes >> 20, unpacked_mib = Limits{}.unpacked_bytes >> 20;
@@ -44,7 +44,7 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
   limit("--max-zip-ratio", limits.zip_ratio, "unpacked to packed size");
   limit("--max-parts", limits.parts, "parts of a multipart body");
   limit("--max-frames", limits.frames, "frames of a job");
-  limit("--max-inspect", limits.inspect_seconds, "seconds for loading a scene once, before its job is taken");
+  limit("--max-inspect", limits.inspect_seconds, "seconds for loading a scene once, before its job is accepted");
   app.add_option("--max-triangles", limits.triangles, "triangles of a scene, instances counted; 0: any")
       ->capture_default_str()
       ->group("Limits");
@@ -60,13 +60,13 @@ void add_limits(CLI::App& app, Given& given, ProgramOptions& options) {
   limit("--max-connections", options.http.max_connections, "open connections");
   limit("--max-streams", options.streams, "clients that wait for events");
   limit("--http-threads", options.http.pool.threads, "threads that answer requests");
-  limit("--max-stalled", options.http.pool.most_stalled,
-        "slow clients that may hold a further thread each; then who is slowest makes room");
+  limit("--max-stalled", options.http.pool.max_stalled,
+        "slow clients that may hold an additional thread each; beyond, the slowest is cut off");
   limit("--worker-memory", given.worker_mib, "MiB of private memory of a worker");
   limit("--max-cpu", options.service.runner.confinement.cpu_seconds, "seconds of processor time of a worker");
   limit("--max-wall", given.wall_s, "seconds that a worker may run");
   limit("--max-file", given.file_mib, "MiB of one file that a worker writes");
-  app.add_option("--min-free", given.free_mib, "MiB of free disk below which no job is taken")
+  app.add_option("--min-free", given.free_mib, "MiB of free disk below which no job is accepted")
       ->capture_default_str()
       ->group("Limits");
 }
@@ -86,9 +86,9 @@ void apply(const Given& given, ProgramOptions& options) {
   options.http.timeouts.read = milliseconds(given.read_timeout_s);
   options.http.timeouts.write = milliseconds(given.read_timeout_s);
   options.http.timeouts.head = milliseconds(given.head_timeout_s);
-  options.service.most_submissions = std::max<std::size_t>(1, options.http.pool.threads / 2);
+  options.service.max_submissions = std::max<std::size_t>(1, options.http.pool.threads / 2);
   options.heartbeat = milliseconds(given.heartbeat_s);
-  options.service.least_free_bytes = given.free_mib << 20;
+  options.service.min_free_bytes = given.free_mib << 20;
   RunnerOptions& runner = options.service.runner;
   runner.confinement.memory_bytes = given.worker_mib << 20;
   runner.confinement.file_bytes = given.file_mib << 20;
@@ -124,26 +124,28 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
   CLI::App app("Renders glTF animations sent over HTTP, each job in a sheaf process of its own.", "sheafd");
   app.set_version_flag("--version", "sheafd " SHEAF_VERSION);
   app.add_option("--listen", given.listen, "HOST:PORT; port 0: any free one")->capture_default_str()->take_last();
-  app.add_option("--data", options.data, "folder for jobs and their files; without it one that is removed at the end");
+  app.add_option("--data", options.data,
+                 "folder for jobs and their files; default: a temporary one, removed at the end");
   app.add_option("--sheaf", options.service.runner.sheaf, "the worker's program")->capture_default_str();
   app.add_option("--jobs", options.service.jobs_at_once, "workers at once")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
-  app.add_option("--port-file", options.port_file, "file that is given the bound address once the service listens");
+  app.add_option("--port-file", options.port_file, "file that receives the bound address once the service listens");
   app.add_option("--token-file", options.token_file,
                  "who may use the service: lines \"NAME read,submit sha256:HEX\"; needed beyond loopback");
   app.add_flag("--allow-anonymous", options.anonymous, "listen beyond loopback without a token file");
   app.add_option("--new-token", options.new_token,
-                 "NAME=SCOPES: print the token file's line for a new token, and on stderr the token, and end");
+                 "NAME=SCOPES: print the token file's line for a new token, and the token on stderr, and exit");
   app.add_option("--report", options.report, "report.json of sheaf-client report, shown on the page");
-  app.add_option("--retention", given.retention_h, "hours that a finished job is kept; 0: for ever")
+  app.add_option("--retention", given.retention_h, "hours for which a finished job is kept; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--max-kept", given.kept_mib, "MiB of all jobs; beyond it, ended ones go, the earliest first; 0: any")
+  app.add_option("--max-kept", given.kept_mib,
+                 "MiB of all jobs; above it, the jobs that ended first are removed; 0: any")
       ->capture_default_str()
       ->group("Limits");
   app.add_flag("!--no-confinement", options.service.runner.confinement.on,
-               "let workers read and do whatever the service may (limits stay)");
+               "let workers read and do whatever the service may (limits still hold)");
   app.add_option("--worker-reads", options.service.runner.confinement.readable,
                  "further folder that workers may read, as for drivers in unusual places; may be repeated");
   app.add_option("--worker-nice", options.service.runner.confinement.nice,
@@ -151,20 +153,20 @@ ProgramOptions parse_options(int argc, const char* const* argv, std::string& hel
       ->capture_default_str()
       ->check(CLI::Range(0, 19));
   app.add_option("--attempts", options.service.runner.attempts,
-                 "starts of a job's worker without a new frame, where a lost device or a kill from outside ended it")
+                 "starts of a job's worker without a new frame, if a lost device or a kill from outside ended it")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  app.add_option("--grace", given.grace_s, "seconds from SIGTERM to SIGKILL for a worker that is to stop")
+  app.add_option("--grace", given.grace_s, "seconds from SIGTERM to SIGKILL when a worker is stopped")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--cancel-grace", given.cancel_grace_s,
-                 "the same where its job is cancelled, which ends within a second; never longer than --grace")
+                 "the same for a cancelled job, which ends within a second; at most --grace")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--heartbeat", given.heartbeat_s, "seconds between comments on an idle event stream")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  app.add_option("--io-timeout", given.read_timeout_s, "seconds a client may pause in a body it sends or is sent")
+  app.add_option("--io-timeout", given.read_timeout_s, "seconds a client may pause while it sends or receives a body")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_option("--head-timeout", given.head_timeout_s, "seconds for a request's head")

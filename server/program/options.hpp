@@ -16,14 +16,14 @@ struct ProgramOptions {
   std::string token_file;  // empty: none
   std::string report;      // of sheaf-client report, to be shown; empty: none
   std::string new_token;   // to be made and printed instead of serving
-  bool anonymous = false;  // beyond loopback without tokens
+  bool anonymous = false;  // listens beyond loopback without tokens
   std::size_t streams = 2000;
   std::chrono::milliseconds heartbeat{15'000};
   HttpOptions http;
   ServiceOptions service;
 };
 
-/// The command line. Throws Error{usage}; `help` gets the text of --help or --version, which ends the program well.
+/// The command line. Throws Error{usage}. `help` receives the text of --help or --version; then the program ends.
 [[nodiscard]] ProgramOptions parse_options(int argc, const char* const* argv, std::string& help);
 
 /// "host:port", "[v6]:port", ":port". Throws Error{usage}.

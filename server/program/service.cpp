@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* database_name = "jobs.db";
 
-/// The data folder: the one named, or one of our own that goes with us.
+/// The data folder: the one named, or a temporary one that is removed at the end.
 class DataFolder {
  public:
   explicit DataFolder(const std::string& named) : path_(named), own_(named.empty()) {
@@ -86,7 +86,7 @@ struct Service::Parts {
   ProgramOptions options;
   Tokens tokens;
   DataFolder folder;
-  JobFiles files;  // holds the folder's lock: nobody else has the database open
+  JobFiles files;  // holds the folder's lock, so no other service has the database open
   bool fresh;
   SqliteJobStore store;
   JobService jobs;

@@ -20,7 +20,7 @@ class Service {
   /// Returns the bound address; throws Error{io}.
   std::string bind();
   void run();   // until stop()
-  void stop();  // from another thread; workers are stopped, watchers let go
+  void stop();  // from another thread; stops workers and ends event streams
   [[nodiscard]] std::vector<std::string> routes() const;
 
  private:

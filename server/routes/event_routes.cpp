@@ -21,7 +21,7 @@ std::uint64_t event_id(const std::string& text, const std::string& what) {
   return id;
 }
 
-/// Where to go on: ?after=, else what a reconnecting event source says it has. An empty header is as good as none.
+/// Where to continue: ?after=, else the last event that a reconnecting event source has. An empty header is ignored.
 std::uint64_t start_after(const Request& request) {
   const std::string header = request.header("Last-Event-ID").value_or("");
   const std::uint64_t seen = header.empty() ? 0 : event_id(header, "Last-Event-ID");
@@ -57,7 +57,7 @@ nlohmann::ordered_json page_of(const EventLog::Batch& batch, std::uint64_t after
   return {{"events", std::move(events)}, {"last", after}, {"ended", batch.ended}};
 }
 
-/// What a client that waits holds: the events, where it is, its place among those that wait.
+/// The state of a waiting client: the event log, its position, its stream slot.
 struct Watcher {
   std::shared_ptr<EventLog> log;
   std::shared_ptr<void> slot;
@@ -80,7 +80,7 @@ struct Watcher {
     return true;
   }
 
-  /// One page, as soon as there is an event or the time is over.
+  /// One page, as soon as there is an event or the wait has ended.
   bool poll(std::string& out) {
     const EventLog::Batch batch = log->read(after, batch_size);
     if (batch.events.empty() && !batch.ended && !log->interrupted() && Clock::now() < due) return true;
@@ -114,7 +114,7 @@ Reply events(RouteContext& context, Request& request) {
 
   Reply reply;
   if (log->read(after, 1).ended && log->read(after, 1).events.empty()) {
-    reply.status = 204;  // tells an event source not to come back
+    reply.status = 204;  // an event source does not reconnect after 204
     return reply;
   }
   auto watcher = std::make_shared<Watcher>();

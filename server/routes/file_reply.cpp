@@ -27,8 +27,8 @@ std::optional<std::uint64_t> number(std::string_view text) {
   return value;
 }
 
-/// The one range asked for. Nothing: the whole file is sent, as for several ranges and for what is not understood.
-/// Throws Problem (416) if no byte of it is there.
+/// The one range asked for. Nothing for several ranges and malformed ones: then the whole file is sent.
+/// Throws Problem (416) if the file has no byte of it.
 std::optional<Part> range_of(std::string_view header, std::uint64_t size) {
   if (!header.starts_with("bytes=") || header.find(',') != std::string_view::npos) return std::nullopt;
   const std::string_view range = trimmed(header.substr(6));
@@ -46,7 +46,7 @@ std::optional<Part> range_of(std::string_view header, std::uint64_t size) {
   return Part{*first, end - *first + 1};
 }
 
-/// The file's own name where it is plain; what a header cannot carry becomes '_'.
+/// The file's name; characters that a header cannot carry become '_'.
 std::string header_name(const std::string& name) {
   std::string out = name;
   for (char& c : out)
@@ -100,7 +100,7 @@ Reply file_reply(const Request& request, const std::filesystem::path& path, cons
   auto fd = std::make_shared<Fd>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   struct stat info {};
   if (!fd->valid() || ::fstat(fd->get(), &info) != 0 || static_cast<std::uint64_t>(info.st_size) != file.bytes)
-    throw Problem(ProblemKind::internal, "the stored file " + file.name + " is not what it was");
+    throw Problem(ProblemKind::internal, "the stored file " + file.name + " has changed");
 
   Reply reply;
   reply.content_type = content_type;

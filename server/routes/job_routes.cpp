@@ -28,7 +28,7 @@ Reply submit(RouteContext& context, Request& request) {
   context.service.check_capacity();
   Submission submission =
       receive_submission(random_id(), request, context.service.files(), context.service.options().limits);
-  const JobService::Place place = context.service.take_place(submission.job);
+  const JobService::AdmissionTicket ticket = context.service.admit(submission.job);
   context.service.inspect(submission.job);
   const Submitted submitted =
       context.service.submit(std::move(submission.job), {key, submission.fingerprint}, request.id);
@@ -70,12 +70,12 @@ Reply list(RouteContext& context, Request& request) {
   return json_reply(200, {{"jobs", std::move(jobs)}, {"next", next}});
 }
 
-Reply look(RouteContext& context, Request& request) {
+Reply get_job(RouteContext& context, Request& request) {
   request.allow_arguments({});
   return json_reply(200, job_to_json(context.service.get(request.parameters["id"])));
 }
 
-/// Whatever happens at the same time, this never removes a job: 202 while it stops, 200 once it has ended.
+/// Never removes a job, whatever happens at the same time: 202 while it stops, 200 once it has ended.
 Reply cancel(RouteContext& context, Request& request) {
   request.allow_arguments({});
   const Job job = context.service.cancel(request.parameters["id"]);
@@ -96,20 +96,20 @@ Reply cancel_or_remove(RouteContext& context, Request& request) {
 void add_job_routes(Router& router, RouteContext& context) {
   router.add("POST", "/v1/jobs", [&context](Request& request) { return submit(context, request); });
   router.add("GET", "/v1/jobs", [&context](Request& request) { return list(context, request); });
-  router.add("GET", "/v1/jobs/{id}", [&context](Request& request) { return look(context, request); });
+  router.add("GET", "/v1/jobs/{id}", [&context](Request& request) { return get_job(context, request); });
   router.add("DELETE", "/v1/jobs/{id}", [&context](Request& request) { return cancel_or_remove(context, request); });
   router.add("POST", "/v1/jobs/{id}/cancel", [&context](Request& request) { return cancel(context, request); });
 }
 
 Reply handle(const Router& router, const Tokens& tokens, Request& request) {
-  // Probes have no tokens, the contract and the page hold nothing of anybody's, and OPTIONS tells what the contract
-  // does.
+  // Probes have no tokens; the contract and the page contain nobody's data; OPTIONS repeats the contract.
   static constexpr std::array open{"/healthz", "/readyz", "/openapi.json", "/"};
-  const bool looks = request.method == "GET" || request.method == "HEAD";
-  const bool free = (looks && std::ranges::find(open, request.path) != open.end()) || request.method == "OPTIONS";
-  if (!free) request.client = tokens.authorize(request, looks ? Scope::read : Scope::submit);
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  const bool free = (reads && std::ranges::find(open, request.path) != open.end()) || request.method == "OPTIONS";
+  if (!free) request.client = tokens.authorize(request, reads ? Scope::read : Scope::submit);
   const bool changes = request.method == "POST" || request.method == "DELETE";
-  // Browsers name the kind of site a request comes from; a stranger's page must not use a service on this machine.
+  // Browsers say from which kind of site a request comes; a page of another site must not use a service on this
+  // machine.
   if (changes && request.header("Sec-Fetch-Site").value_or("same-origin") == "cross-site")
     throw Problem(ProblemKind::foreign_origin, "the request comes from a page of another site");
   Reply reply = router.dispatch(request);

@@ -33,7 +33,7 @@ nlohmann::ordered_json limit_table(const ServiceOptions& options) {
 
   constexpr const char* later = "503 with Retry-After";
   add("max-queue", limits.queued_jobs, "jobs that wait", later);
-  add("min-free", options.least_free_bytes, "bytes of free disk, at least", later);
+  add("min-free", options.min_free_bytes, "bytes of free disk, at least", later);
   return table;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 class Text {
  public:
-  // Sums grow for months: with the usual six digits they would seem to stand still.
+  // With the default of six digits, large sums would not appear to grow.
   Text() { out_.precision(std::numeric_limits<double>::digits10); }
   void family(const std::string& name, const std::string& type, const std::string& help) {
     name_ = "sheaf_" + name;
@@ -46,7 +46,7 @@ class Text {
   std::string name_;
 };
 
-/// As a label's value: nothing in it ends the value or the line.
+/// A label's value, escaped.
 std::string quoted(const std::string& value) {
   std::string out = "\"";
   for (const char c : value) out += c == '\\' ? "\\\\" : c == '"' ? "\\\"" : c == '\n' ? "\\n" : std::string(1, c);
@@ -103,7 +103,7 @@ void write_jobs(Text& text, const JobService& service) {
 void Metrics::count(const ExchangeRecord& exchange) {
   const double seconds = exchange.seconds.count();
   const std::lock_guard lock(mutex_);
-  // A stranger must not be able to make series without end.
+  // Clients must not be able to create any number of series.
   static constexpr std::array known{"GET", "HEAD", "POST", "DELETE", "OPTIONS"};
   const bool usual = std::ranges::find(known, exchange.method) != known.end();
   ++requests_[{usual ? exchange.method : "other", exchange.status}];

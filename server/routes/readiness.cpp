@@ -8,7 +8,7 @@ namespace {
 
 constexpr auto retry_after = std::chrono::minutes(1);
 constexpr auto grace = std::chrono::seconds(2);
-constexpr auto longest = std::chrono::seconds(60);  // a driver that hangs is none
+constexpr auto longest = std::chrono::seconds(60);  // a driver that hangs counts as no device
 constexpr std::size_t max_reason = 500;
 
 }  // namespace
@@ -30,7 +30,7 @@ DeviceProbe::Result DeviceProbe::result() {
   const std::lock_guard lock(mutex_);
   if (result_.ready && losses_ != losses_seen_) {
     result_ = {false, "a worker had no device, or lost it: devices are still being looked for"};
-    doubted_ = true;
+    recheck_ = true;
     changed_.notify_all();
   }
   return result_;
@@ -39,13 +39,13 @@ DeviceProbe::Result DeviceProbe::result() {
 void DeviceProbe::watch() {
   std::unique_lock lock(mutex_);
   while (!closed_) {
-    doubted_ = false;
+    recheck_ = false;
     losses_seen_ = losses_;
     lock.unlock();
     Result found = probe();
     lock.lock();
     result_ = std::move(found);
-    const auto asked = [this] { return closed_ || doubted_; };
+    const auto asked = [this] { return closed_ || recheck_; };
     if (result_.ready)
       changed_.wait(lock, asked);
     else

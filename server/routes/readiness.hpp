@@ -13,8 +13,8 @@
 
 namespace sheaf::server {
 
-/// Whether a worker finds a device: `sheaf devices`, confined as workers are, is run at the start, again every minute
-/// while it fails, and whenever somebody asks after a worker was without one.
+/// Whether a worker finds a device. `sheaf devices`, confined as workers are, runs at the start, every minute while it
+/// fails, and when somebody asks after a worker had no device or lost it.
 class DeviceProbe {
  public:
   /// `losses`: how many workers had no device or lost it.
@@ -40,7 +40,7 @@ class DeviceProbe {
   std::condition_variable changed_;
   Result result_;
   std::uint64_t losses_seen_ = 0;
-  bool closed_ = false, doubted_ = false;
+  bool closed_ = false, recheck_ = false;
   StopSwitch stop_;
   std::thread thread_;
 };

@@ -54,7 +54,7 @@ Reply frame_png(RouteContext& context, Request& request) {
   throw Problem(ProblemKind::not_produced, "the job ended without it: " + what + " not there");
 }
 
-/// All frames that the finished job has.
+/// All frames of a finished job.
 Reply archive(RouteContext& context, Request& request) {
   request.allow_arguments({});
   const Job job = context.service.get(request.parameters["id"]);

@@ -26,13 +26,13 @@ struct RouteContext {
 };
 
 /// `context` outlives the router.
-void add_job_routes(Router& router, RouteContext& context);      // submit, list, look, cancel, remove
+void add_job_routes(Router& router, RouteContext& context);      // submit, list, read, cancel, remove
 void add_event_routes(Router& router, RouteContext& context);    // event stream and long poll
 void add_result_routes(Router& router, RouteContext& context);   // frames, archive, stats, log
 void add_service_routes(Router& router, RouteContext& context);  // health, readiness, metrics, contract, page
 
-/// What every request passes: the routes, with strangers kept out, and a page of another site kept from submitting or
-/// removing jobs.
+/// Handles every request: checks its token, refuses to let another site's page submit, cancel or remove jobs, and calls
+/// the route.
 [[nodiscard]] Reply handle(const Router& router, const Tokens& tokens, Request& request);
 
 }  // namespace sheaf::server

@@ -8,21 +8,21 @@
 namespace sheaf::server {
 namespace {
 
-constexpr std::uint64_t most_report = std::uint64_t{64} << 20;
+constexpr std::uint64_t max_report = std::uint64_t{64} << 20;
 
 Reply health(RouteContext&, Request&) { return json_reply(200, {{"status", "alive"}, {"version", SHEAF_VERSION}}); }
 
 /// Device, disk and queue, each "ok" or the reason why no job should be sent here.
 Reply readiness(RouteContext& context, Request&) {
   const DeviceProbe::Result device = context.device.result();
-  const JobService::Fitness fitness = context.service.fitness();
+  const JobService::Readiness jobs = context.service.readiness();
   const nlohmann::ordered_json checks{
-      {"device", device.ready ? "ok" : device.reason}, {"disk", fitness.disk}, {"queue", fitness.queue}};
-  std::string trouble;
+      {"device", device.ready ? "ok" : device.reason}, {"disk", jobs.disk}, {"queue", jobs.queue}};
+  std::string reasons;
   for (const auto& [name, found] : checks.items())
-    if (found != "ok") trouble += (trouble.empty() ? "" : "; ") + name + ": " + found.get<std::string>();
-  if (trouble.empty()) return json_reply(200, {{"status", "ready"}, {"checks", checks}});
-  throw Problem(ProblemKind::not_ready, trouble).header("Retry-After", "10").member("checks", checks);
+    if (found != "ok") reasons += (reasons.empty() ? "" : "; ") + name + ": " + found.get<std::string>();
+  if (reasons.empty()) return json_reply(200, {{"status", "ready"}, {"checks", checks}});
+  throw Problem(ProblemKind::not_ready, reasons).header("Retry-After", "10").member("checks", checks);
 }
 
 Reply metrics(RouteContext& context, Request&) {
@@ -33,7 +33,7 @@ Reply metrics(RouteContext& context, Request&) {
 
 Reply report(RouteContext& context, Request&) {
   if (context.report.empty()) throw Problem(ProblemKind::not_produced, "the service was given no report");
-  return text_reply("application/json", read_text(context.report, most_report));
+  return text_reply("application/json", read_text(context.report, max_report));
 }
 
 /// The page with the schema of the settings in it, from which it makes its form.

@@ -9,18 +9,18 @@
 
 namespace sheaf::server {
 
-/// How many clients may hold a thread each while they wait for events.
+/// Bounds how many clients wait for events (--max-streams).
 class StreamSlots {
  public:
   explicit StreamSlots(std::size_t limit) : limit_(limit) {}
 
-  /// Held until the last copy is gone. Throws Problem (503) if there is none left.
+  /// A slot, held until the last copy is destroyed. Throws Problem (503) if none is free.
   [[nodiscard]] std::shared_ptr<void> take() {
     if (++used_ > limit_) {
       --used_;
       throw Problem(ProblemKind::too_many_streams, std::to_string(limit_) + " clients are waiting for events")
           .header("Retry-After", "5")
-          .passed("max-streams", limit_, limit_ + 1);
+          .exceeded("max-streams", limit_, limit_ + 1);
     }
     return {this, [this](void*) { --used_; }};
   }

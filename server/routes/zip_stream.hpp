@@ -25,7 +25,7 @@ class ZipStream {
 
   [[nodiscard]] std::uint64_t length() const { return length_; }
 
-  /// `content` sends entry number `index`'s bytes. False as soon as one of the two gives false.
+  /// `content` sends the bytes of entry `index`. False as soon as `write` or `content` returns false.
   using Content = std::function<bool(std::size_t index, const Writer& write)>;
   [[nodiscard]] bool write(const Writer& write, const Content& content) const;
 

@@ -57,13 +57,13 @@ Submitted SqliteJobStore::insert(Job job, const Idempotency& idempotency) {
     transaction.commit();
   } catch (const Error& error) {
     const std::lock_guard shown(shown_);
-    trouble_ = error.what();
+    write_error_ = error.what();
     throw;
   }
   auto shared = std::make_shared<const Job>(std::move(job));
   auto log = std::make_shared<EventLog>(events.list(), false);
   const std::lock_guard shown(shown_);
-  trouble_.clear();
+  write_error_.clear();
   if (interrupted_) log->interrupt();
   active_[shared->id] = {shared, shared, std::move(log), events.list().size()};
   return {Submitted::Kind::created, shared->id};
@@ -143,7 +143,7 @@ SqliteJobStore::Entry* SqliteJobStore::entry_of(const std::string& id) {
 }
 
 /// True once `job` and every event is in the database.
-bool SqliteJobStore::store(Entry& entry, const JobPtr& job, const std::vector<Event>& fresh, IfUnstored unstored) {
+bool SqliteJobStore::store(Entry& entry, const JobPtr& job, const std::vector<Event>& fresh, OnWriteError on_error) {
   std::string reason;
   try {
     std::vector<Event> events = entry.events->read(entry.events_stored, SIZE_MAX).events;
@@ -157,10 +157,10 @@ bool SqliteJobStore::store(Entry& entry, const JobPtr& job, const std::vector<Ev
     reason = error.what();
   }
   const std::lock_guard shown(shown_);
-  if (trouble_.empty() && !reason.empty())
+  if (write_error_.empty() && !reason.empty())
     write_log(LogLevel::error, "cannot store", {{"job", job->id}, {"reason", reason}});
-  trouble_ = reason;
-  if (!reason.empty() && unstored == IfUnstored::refuse) throw Error(ErrorKind::io, reason);
+  write_error_ = reason;
+  if (!reason.empty() && on_error == OnWriteError::refuse) throw Error(ErrorKind::io, reason);
   return reason.empty();
 }
 
@@ -173,14 +173,14 @@ void SqliteJobStore::retire_if_ended(const std::string& id) {
   active_.erase(id);
 }
 
-bool SqliteJobStore::update(const std::string& id, const Change& change, IfUnstored unstored) {
+bool SqliteJobStore::update(const std::string& id, const Change& change, OnWriteError on_error) {
   const std::lock_guard changing(changing_);
   Entry* const entry = entry_of(id);
   if (!entry || is_finished(entry->job->state)) return false;
   auto next = std::make_shared<Job>(*entry->job);
   NewEvents events(entry->events->size());
   change(*next, events);
-  store(*entry, next, events.list(), unstored);
+  store(*entry, next, events.list(), on_error);
   {
     const std::lock_guard shown(shown_);
     entry->job = next;
@@ -208,7 +208,7 @@ bool SqliteJobStore::remove(const std::string& id, const std::string& reason) {
     transaction.commit();
   } catch (const Error& error) {
     const std::lock_guard shown(shown_);
-    trouble_ = error.what();
+    write_error_ = error.what();
     throw;
   }
   const std::lock_guard shown(shown_);
@@ -227,7 +227,7 @@ std::vector<std::string> SqliteJobStore::expired(WallTime now) const {
   return ids_of(rows.bind(to_milliseconds(now)));
 }
 
-std::vector<std::string> SqliteJobStore::beyond(std::uint64_t bytes) const {
+std::vector<std::string> SqliteJobStore::over_quota(std::uint64_t bytes) const {
   const std::lock_guard reading(reading_);
   Statement total = reader_.prepare("SELECT coalesce(sum(bytes), 0) FROM jobs");
   std::int64_t excess = total.step() ? total.integer(0) - static_cast<std::int64_t>(bytes) : 0;
@@ -238,17 +238,17 @@ std::vector<std::string> SqliteJobStore::beyond(std::uint64_t bytes) const {
   return ids;
 }
 
-std::optional<std::string> SqliteJobStore::trouble() {
+std::optional<std::string> SqliteJobStore::write_error() {
   {
     const std::lock_guard shown(shown_);
-    if (trouble_.empty()) return std::nullopt;
+    if (write_error_.empty()) return std::nullopt;
   }
   const std::lock_guard changing(changing_);
   std::vector<std::string> ids;
   for (const auto& [id, entry] : active_)
     if (entry.stored != entry.job) ids.push_back(id);
   for (const std::string& id : ids)
-    if (store(*entry_of(id), entry_of(id)->job, {}, IfUnstored::keep)) retire_if_ended(id);
+    if (store(*entry_of(id), entry_of(id)->job, {}, OnWriteError::keep)) retire_if_ended(id);
   std::string reason;
   try {  // a write, whether or not there was anything to be stored
     Transaction transaction(writer_);
@@ -258,7 +258,7 @@ std::optional<std::string> SqliteJobStore::trouble() {
     reason = error.what();
   }
   const std::lock_guard shown(shown_);
-  trouble_ = reason;
+  write_error_ = reason;
   return reason.empty() ? std::nullopt : std::optional(reason);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Jobs in SQLite. Unfinished ones are in memory as well, as values that are never changed but replaced once their
-// successor is on the disk: who looks at a job never waits for the disk, and never sees what a crash could take back.
+// Jobs in SQLite. Unfinished ones are in memory as well, as immutable values that are replaced once their successor is
+// on the disk: reading a job never waits for the disk, and never shows what a crash could undo.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@ namespace sheaf::server {
 
 class SqliteJobStore final : public JobStore {
  public:
-  /// Opens or makes `path`; takes up the unfinished jobs that are in it. Throws Error{io}.
+  /// Opens or creates `path` and loads its unfinished jobs. Throws Error{io}.
   explicit SqliteJobStore(const std::string& path);
 
   Submitted insert(Job job, const Idempotency& idempotency) override;
@@ -24,12 +24,12 @@ class SqliteJobStore final : public JobStore {
   [[nodiscard]] JobPage list(const JobQuery& query) const override;
   [[nodiscard]] std::map<JobState, std::uint64_t> count() const override;
   [[nodiscard]] std::vector<std::string> unfinished() const override;
-  bool update(const std::string& id, const Change& change, IfUnstored unstored = IfUnstored::keep) override;
+  bool update(const std::string& id, const Change& change, OnWriteError on_error = OnWriteError::keep) override;
   [[nodiscard]] std::shared_ptr<EventLog> events(const std::string& id) const override;
   bool remove(const std::string& id, const std::string& reason) override;
   [[nodiscard]] std::vector<std::string> expired(WallTime now) const override;
-  [[nodiscard]] std::vector<std::string> beyond(std::uint64_t bytes) const override;
-  std::optional<std::string> trouble() override;
+  [[nodiscard]] std::vector<std::string> over_quota(std::uint64_t bytes) const override;
+  std::optional<std::string> write_error() override;
   void interrupt_waits() override;
 
  private:
@@ -41,22 +41,22 @@ class SqliteJobStore final : public JobStore {
   };
 
   [[nodiscard]] Entry* entry_of(const std::string& id);
-  bool store(Entry& entry, const JobPtr& job, const std::vector<Event>& fresh, IfUnstored unstored);
+  bool store(Entry& entry, const JobPtr& job, const std::vector<Event>& fresh, OnWriteError on_error);
   void retire_if_ended(const std::string& id);
   void remember(const JobPtr& job) const;
 
-  // Taken in this order where several are. Changes are made one at a time; looking needs the other two alone.
+  // Locked in this order. Changes are made one at a time; reading needs only the other two.
   std::mutex changing_;
   mutable std::mutex reading_;
   mutable std::mutex shown_;
 
   Database writer_;          // under changing_
   mutable Database reader_;  // under reading_
-  // Under shown_; written to under changing_ as well, so that a change may read them without.
+  // Under shown_; written under changing_ as well, so that a change may read them with changing_ alone.
   std::unordered_map<std::string, Entry> active_;
-  mutable std::deque<JobPtr> recent_;  // ended ones that were looked at lately
+  mutable std::deque<JobPtr> recent_;  // ended jobs that were read lately
   std::uint64_t removals_ = 0;
-  std::string trouble_;
+  std::string write_error_;
   bool interrupted_ = false;
 };
 

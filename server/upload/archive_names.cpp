@@ -22,7 +22,7 @@ bool lies_in(const std::filesystem::path& path, const std::filesystem::path& fol
 
 }  // namespace
 
-bool is_file_managers(std::string_view name) {
+bool is_file_manager_metadata(std::string_view name) {
   static constexpr std::array<std::string_view, 4> files{".DS_Store", "Icon\r", "Thumbs.db", "desktop.ini"};
   while (true) {
     const auto end = name.find_first_of("/\\");
@@ -40,8 +40,8 @@ bool is_scene_name(const std::filesystem::path& path) {
   return extension == ".glb" || extension == ".gltf";
 }
 
-std::filesystem::path only_scene(std::vector<std::filesystem::path> scenes) {
-  if (scenes.empty()) refuse("there is no .glb or .gltf in it");
+std::filesystem::path find_scene(std::vector<std::filesystem::path> scenes) {
+  if (scenes.empty()) refuse("it contains no .glb or .gltf file");
   std::ranges::sort(scenes, [](const auto& a, const auto& b) {
     return depth_of(a) != depth_of(b) ? depth_of(a) < depth_of(b) : a < b;
   });
@@ -49,7 +49,7 @@ std::filesystem::path only_scene(std::vector<std::filesystem::path> scenes) {
   const std::filesystem::path folder = first.parent_path();
   for (auto other = scenes.begin() + 1; other != scenes.end(); ++other)
     if (other->parent_path() == folder || !lies_in(*other, folder))
-      refuse("there are several scenes: '" + quote(first.string()) + "', '" + quote(other->string()) + "'");
+      refuse("it contains several scenes: '" + quote(first.string()) + "', '" + quote(other->string()) + "'");
   return first;
 }
 

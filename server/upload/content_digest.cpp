@@ -41,7 +41,7 @@ std::string hex_of(std::string_view value) {
 
 }  // namespace
 
-std::optional<std::string> told_sha256(const Request& request) {
+std::optional<std::string> declared_sha256(const Request& request) {
   const std::string header = request.header("Content-Digest").value_or("");
   std::optional<std::string> found;
   for (std::string_view rest = header; !rest.empty();) {

@@ -190,7 +190,7 @@ bool MultipartParser::read_delimiter() {
   if (buffer_.compare(padding, 2, "\r\n") != 0) malformed("a delimiter is followed by other text");
   if (parts_left_-- == 0)
     throw Problem(ProblemKind::too_large, "the body has more than " + std::to_string(max_parts_) + " parts")
-        .passed("max-parts", max_parts_, max_parts_ + 1);
+        .exceeded("max-parts", max_parts_, max_parts_ + 1);
   buffer_.erase(0, padding + 2);
   state_ = State::headers;
   return true;

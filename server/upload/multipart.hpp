@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// multipart/form-data (RFC 7578) as it streams in, in pieces of any size. Strict about what matters (delimiters, one
-// name a part, bounded headers), deaf to what does not (preamble, epilogue, other headers).
+// A streaming parser of multipart/form-data (RFC 7578), fed in pieces of any size. Strict about delimiters, one name
+// per part, and bounded headers; ignores preamble, epilogue and other headers.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class MultipartParser {
   /// Throws Problem (400).
   void feed(std::string_view bytes);
 
-  /// The body has ended: throws Problem (400) unless the closing delimiter was there.
+  /// The body has ended: throws Problem (400) unless it had its closing delimiter.
   void finish() const;
 
  private:

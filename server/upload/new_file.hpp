@@ -13,7 +13,7 @@ namespace sheaf::server {
 /// A file being received. Throws Problem (422) if the name is taken, Error{io} if it cannot be written.
 class NewFile {
  public:
-  /// `relative` is checked (safe_relative_path) and lies in `folder`; folders on the way are made.
+  /// `relative` is checked (safe_relative_path) and lies in `folder`; missing folders are created.
   NewFile(const std::filesystem::path& folder, const std::filesystem::path& relative);
   void write(std::string_view bytes);
   void close();

@@ -44,7 +44,7 @@ std::filesystem::path scene_folder(const PartHeader& part) {
   try {
     return safe_relative_path(part.filename.value_or("")).parent_path();
   } catch (const Problem&) {
-    return {};  // a path of the client's machine: its last part names the scene
+    return {};  // a path of the client's machine: only its last part is used
   }
 }
 
@@ -57,7 +57,7 @@ class Receiver {
     part_hash_ = Sha256();
     text_.clear();
     if (part.name == "scene") {
-      if (!scene_name_.empty()) twice();
+      if (!scene_name_.empty()) refuse_duplicate();
       scene_name_ = scene_name(part);
       scene_folder_ = scene_folder(part);
       const bool zip = extension_of(scene_name_) == ".zip";
@@ -66,12 +66,12 @@ class Receiver {
       if (!part.filename) throw Problem(ProblemKind::malformed_multipart, "part 'file' has no file name");
       const std::filesystem::path path = safe_relative_path(*part.filename);
       file_.emplace(folder_ / "scene", path);
-      tops_.insert(path.has_parent_path() ? *path.begin() : std::filesystem::path());
+      top_folders_.insert(path.has_parent_path() ? *path.begin() : std::filesystem::path());
     } else if (part.name == "camera") {
-      if (camera_) twice();
+      if (camera_) refuse_duplicate();
       text_limit_ = limits_.camera_bytes;
     } else if (part.name == "settings") {
-      if (settings_) twice();
+      if (settings_) refuse_duplicate();
       text_limit_ = limits_.settings_bytes;
     } else {
       throw Problem(ProblemKind::malformed_multipart,
@@ -88,7 +88,7 @@ class Receiver {
     if (file_) return file_->write(bytes);
     if (text_.size() + bytes.size() > text_limit_)
       throw Problem(ProblemKind::too_large, part_.name + ": has more than " + std::to_string(text_limit_) + " bytes")
-          .passed(part_.name == "camera" ? "camera" : "settings", text_limit_, text_.size() + bytes.size());
+          .exceeded(part_.name == "camera" ? "camera" : "settings", text_limit_, text_.size() + bytes.size());
     text_.append(bytes);
   }
 
@@ -127,7 +127,7 @@ class Receiver {
   }
 
  private:
-  [[noreturn]] void twice() const {
+  [[noreturn]] void refuse_duplicate() const {
     throw Problem(ProblemKind::malformed_multipart, "part '" + part_.name + "' is given twice");
   }
 
@@ -148,25 +148,26 @@ class Receiver {
     file.close();
   }
 
-  /// The scene's path within the scene folder. Only the first bytes are looked at: the worker judges the rest.
+  /// The scene's path within the scene folder. Only the first bytes are checked; the worker reads the rest.
   std::string unpack_scene() {
     if (scene_name_.empty()) bad_scene("there is no scene part");
     const std::string extension = extension_of(scene_name_);
     if (extension != ".zip") {
       check_kind(extension);
-      return beside_files();
+      return place_beside_files();
     }
-    if (!tops_.empty()) bad_scene("file: parts beside a .zip scene are not taken");
+    if (!top_folders_.empty()) bad_scene("file: parts besides a .zip scene are not accepted");
     const auto archive = folder_ / "upload.zip";
     const std::string name = unzip_scene(archive, folder_ / "scene", limits_).string();
     std::filesystem::remove(archive);
     return name;
   }
 
-  /// A folder that is sent as a whole names the scene and its files from where it lies ("model/a.gltf", "model/a.bin"):
-  /// the scene then goes into that folder. Files that are named otherwise are named from the scene on.
-  std::string beside_files() const {
-    if (tops_.size() != 1 || scene_folder_.empty() || *tops_.begin() != *scene_folder_.begin()) return scene_name_;
+  /// If a whole folder is sent, the scene's and the files' names begin with that folder ("model/a.gltf",
+  /// "model/a.bin"): then the scene is moved into it. Other files' names are relative to the scene.
+  std::string place_beside_files() const {
+    if (top_folders_.size() != 1 || scene_folder_.empty() || *top_folders_.begin() != *scene_folder_.begin())
+      return scene_name_;
     const std::filesystem::path scenes = folder_ / "scene", name = scene_folder_ / scene_name_;
     std::error_code error;
     std::filesystem::create_directories(scenes / scene_folder_, error);
@@ -192,7 +193,7 @@ class Receiver {
   std::optional<NewFile> file_;
   std::string scene_name_, head_, text_;  // `head_`: the scene part's first bytes
   std::filesystem::path scene_folder_;
-  std::set<std::filesystem::path> tops_;  // first folders of the files' names; empty: no folder
+  std::set<std::filesystem::path> top_folders_;  // first folders of the files' names; empty: no folder
   std::uint64_t text_limit_ = 0, total_bytes_ = 0, scene_size_ = 0;
   std::optional<std::string> camera_, settings_;
 };
@@ -233,7 +234,7 @@ Submission receive_submission(const std::string& id, Request& request, const Job
     MultipartParser parser(*boundary, limits.parts,
                            {[&](const PartHeader& part) { receiver.begin(part); },
                             [&](std::string_view bytes) { receiver.data(bytes); }, [&] { receiver.end(); }});
-    const std::optional<std::string> told = told_sha256(request);
+    const std::optional<std::string> told = declared_sha256(request);
     if (told)
       read_checked(request, *told, parser);
     else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The body of POST /v1/jobs: its parts to files in the job's folder, checked, ready to be queued.
+// Receives the body of POST /v1/jobs: writes its parts to files in the job's folder and checks them.
 #pragma once
 
 #include <string>

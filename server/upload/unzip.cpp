@@ -28,7 +28,7 @@ constexpr std::size_t max_name = 1024;
 [[noreturn]] void too_large(const std::string& what, const char* name, std::uint64_t value, std::uint64_t limit) {
   throw Problem(ProblemKind::too_large,
                 "zip: " + what + " is at least " + std::to_string(value) + ", the limit is " + std::to_string(limit))
-      .passed(name, limit, value);
+      .exceeded(name, limit, value);
 }
 
 class Unzipper {
@@ -51,7 +51,7 @@ class Unzipper {
       if (moved != UNZ_OK) refuse("the directory is damaged");
       unpack_entry();
     }
-    return only_scene(std::move(scenes_));
+    return find_scene(std::move(scenes_));
   }
 
  private:
@@ -63,7 +63,7 @@ class Unzipper {
     if (info.size_filename > max_name || std::strlen(text.data()) != info.size_filename)
       refuse("an entry's name is longer than 1024 bytes or holds a zero");
     const std::string name = text.data();
-    if (is_file_managers(name) || is_folder(name, info)) return;  // folders are made for the files in them
+    if (is_file_manager_metadata(name) || is_folder(name, info)) return;  // folders are made for the files in them
     const auto refuse_entry = [&](const char* why) { refuse("entry '" + quote(name) + "' " + why); };
     const auto mode = static_cast<mode_t>(info.external_fa >> 16);
     if (S_ISLNK(mode)) refuse_entry("is a link");

@@ -25,7 +25,7 @@ void write_log(LogLevel level, std::string_view message, const nlohmann::json& f
   const std::lock_guard lock(mutex);
   for (std::size_t at = 0; at < line.size();) {
     const ssize_t n = ::write(STDERR_FILENO, line.data() + at, line.size() - at);
-    if (n <= 0) return;  // nobody listens: the service goes on
+    if (n <= 0) return;  // a closed stderr must not stop the service
     at += static_cast<std::size_t>(n);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The service's own log: one JSON object a line on stderr, whole lines whatever the threads do.
+// The service's log: one JSON object per line on stderr; lines of several threads are never mixed.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,10 +9,10 @@ namespace sheaf::server {
 
 enum class LogLevel { info, warning, error };
 
-/// `fields` join `time`, `level` and `message`.
+/// `fields` are added to `time`, `level` and `message`.
 void write_log(LogLevel level, std::string_view message, const nlohmann::json& fields = nlohmann::json::object());
 
-/// JSON text for bytes that may not be UTF-8: what cannot be shown becomes U+FFFD.
+/// JSON text of strings that may not be valid UTF-8: invalid bytes become U+FFFD.
 [[nodiscard]] std::string dump_json(const nlohmann::json& value, int indent = -1);
 
 }  // namespace sheaf::server

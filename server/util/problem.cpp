@@ -20,7 +20,7 @@ Row row_of(ProblemKind kind) {
     case ProblemKind::malformed_json:
       return {400, "malformed-json", "A JSON part is not JSON"};
     case ProblemKind::foreign_origin:
-      return {403, "foreign-origin", "Requests from other sites' pages are refused"};
+      return {403, "foreign-origin", "Requests from pages of other sites are refused"};
     case ProblemKind::unauthorized:
       return {401, "unauthorized", "A token is needed"};
     case ProblemKind::insufficient_scope:
@@ -50,9 +50,9 @@ Row row_of(ProblemKind kind) {
     case ProblemKind::unsupported_media_type:
       return {415, "unsupported-media-type", "The media type is not supported"};
     case ProblemKind::range_not_satisfiable:
-      return {416, "range-not-satisfiable", "The range is beyond the end"};
+      return {416, "range-not-satisfiable", "The range starts beyond the end"};
     case ProblemKind::digest_mismatch:
-      return {422, "digest-mismatch", "The upload is not what its digest says"};
+      return {422, "digest-mismatch", "The upload does not match its digest"};
     case ProblemKind::bad_settings:
       return {422, "bad-settings", "The settings are not valid"};
     case ProblemKind::bad_scene:
@@ -68,7 +68,7 @@ Row row_of(ProblemKind kind) {
     case ProblemKind::not_implemented:
       return {501, "not-implemented", "The method is not known"};
     case ProblemKind::busy:
-      return {503, "busy", "Too much is being done at once"};
+      return {503, "busy", "The service is busy"};
     case ProblemKind::queue_full:
       return {503, "queue-full", "The queue is full"};
     case ProblemKind::too_many_streams:

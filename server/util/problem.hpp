@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every refusal the service gives: RFC 9457 problem details. Thrown anywhere below a route, written in one place.
+// Every refusal of the service as RFC 9457 problem details. Thrown anywhere below a route, made a reply in guarded.cpp.
 #pragma once
 
 #include <cstdint>
@@ -59,17 +59,18 @@ class Problem : public std::exception {
     headers_.emplace_back(std::move(name), std::move(value));
     return *this;
   }
-  /// A member beside the standard five, such as the limit that was passed.
+  /// A member besides the standard five, such as the limit that was exceeded.
   Problem& member(const std::string& name, nlohmann::json value) {
     members_[name] = std::move(value);
     return *this;
   }
 
-  /// The setting that is meant, as a JSON pointer (RFC 6901); left out where the key is too long to repeat.
+  /// The setting concerned, as a JSON pointer (RFC 6901); left out if the key is too long to repeat.
   Problem& at(std::string_view key);
 
-  /// The limit that was passed: its option without the dashes, what it allows, and what came, or would have at least.
-  Problem& passed(const char* name, std::uint64_t limit, std::uint64_t value) {
+  /// The limit that was exceeded: its option without the dashes, what it allows, and the actual value (or a lower
+  /// bound).
+  Problem& exceeded(const char* name, std::uint64_t limit, std::uint64_t value) {
     return member("limit_name", name).member("limit", limit).member("value", value);
   }
 

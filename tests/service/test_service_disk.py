@@ -76,7 +76,7 @@ def wait_until_well(service: Service) -> None:
 def wait_until_held_up(service: Service, job: str) -> None:
     """Until the job's worker has found that it cannot write."""
     for event in service.events(job):
-        if event["event"] == "warning" and "when the disk is well" in event["data"]["message"]:
+        if event["event"] == "warning" and "when the disk can be written" in event["data"]["message"]:
             return
     raise AssertionError(service.job(job))
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Submitting, listing, cancelling and removing jobs."""
+"""A job from its submission to its end: listing, cancelling, removing, limits of the queue."""
 
 import hashlib
 import re
 from collections.abc import Callable
 
 from conftest import Gate
-from service import Service, arguments, check_problem, gltf
+from service import Service, check_problem, gltf
 
 
 def test_a_job_from_submission_to_its_end(sheafd: Service) -> None:
@@ -134,12 +134,6 @@ def test_cancelling_never_removes(sheafd: Service, gate: Gate) -> None:
     check_problem(sheafd.http.post(f"/v1/jobs/{'a' * 26}/cancel"), 404, "unknown-job")
     sheafd.http.delete(f"/v1/jobs/{done}")
     check_problem(sheafd.http.post(f"/v1/jobs/{done}/cancel"), 410, "job-removed")
-
-
-def test_no_depth_at_all(sheafd: Service) -> None:
-    job = sheafd.accepted(gltf(), {"frames": 0, "depth": 0})
-    assert sheafd.wait(job)["settings"]["depth"] == 0
-    assert "--depth=0" in arguments(sheafd, job)
 
 
 def test_checksums_of_frames_and_previews(sheafd: Service) -> None:

@@ -76,7 +76,7 @@ TEST(Outcome, OnlyWhatIsNotTheScenesIsTriedAgain) {
   const auto passing = [](std::optional<int> code, std::optional<int> signal) {
     Ending end;
     end.worker = {code, signal};
-    return is_passing(end);
+    return is_transient(end);
   };
   for (const int code : {4, 6, 130, 143}) EXPECT_TRUE(passing(code, {})) << code;
   for (const int code : {0, 1, 2, 3, 5}) EXPECT_FALSE(passing(code, {})) << code;
@@ -84,7 +84,7 @@ TEST(Outcome, OnlyWhatIsNotTheScenesIsTriedAgain) {
   for (const int number : {SIGSEGV, SIGABRT, SIGXCPU, SIGSYS}) EXPECT_FALSE(passing({}, number)) << number;
   Ending late;
   late.worker = {{}, SIGKILL, true};
-  EXPECT_FALSE(is_passing(late));
+  EXPECT_FALSE(is_transient(late));
   EXPECT_EQ(outcome_of(late).failure->code, "limit-exceeded");
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 HttpOptions few_threads() {
   HttpOptions options;
-  options.pool = {.threads = 2, .most_stalled = 3, .patience = std::chrono::milliseconds(20)};
+  options.pool = {.threads = 2, .max_stalled = 3, .patience = std::chrono::milliseconds(20)};
   options.timeouts.read = options.timeouts.write = std::chrono::seconds(60);
   return options;
 }

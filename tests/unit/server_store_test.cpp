@@ -163,9 +163,9 @@ TEST_F(Store, EndedJobsGoWhenThereIsTooMuch) {
     store.insert(job, {});
     if (id != "a") store.update(id, [](Job& stored, NewEvents& events) { end(stored, events, JobState::done); });
   }
-  EXPECT_TRUE(store.beyond(300).empty());
-  EXPECT_EQ(store.beyond(299), std::vector<std::string>{"b"});
-  EXPECT_EQ(store.beyond(0), (std::vector<std::string>{"b", "c"}));  // never one that is not over
+  EXPECT_TRUE(store.over_quota(300).empty());
+  EXPECT_EQ(store.over_quota(299), std::vector<std::string>{"b"});
+  EXPECT_EQ(store.over_quota(0), (std::vector<std::string>{"b", "c"}));  // never one that is not over
 }
 
 TEST_F(Store, WhoLooksSeesWholeChanges) {

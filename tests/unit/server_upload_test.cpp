@@ -126,20 +126,20 @@ TEST(Archives, LeaveOutWhatFileManagersAdd) {
   for (const std::string& name :
        std::vector<std::string>{"__MACOSX/model/._a.gltf", "__MACOSX/", "a/__MACOSX/b", "._a.gltf", "a/._b", "a\\._b",
                                 ".DS_Store", "a/.DS_Store", "a/Icon\r", "Thumbs.db", "a/thumbs.db", "a/Desktop.ini"})
-    EXPECT_TRUE(is_file_managers(name)) << name;
+    EXPECT_TRUE(is_file_manager_metadata(name)) << name;
   for (const std::string& name : std::vector<std::string>{"a.gltf", "a/", "", "MACOSX/a", "a_.gltf", "._a/b",
                                                           "x.DS_Store", "__MACOSX", "icon", "_a"})
-    EXPECT_EQ(is_file_managers(name), name == "__MACOSX") << name;
+    EXPECT_EQ(is_file_manager_metadata(name), name == "__MACOSX") << name;
 }
 
 TEST(Archives, HaveOneSceneWhoseFolderHoldsTheOthers) {
-  EXPECT_EQ(only_scene({"a.gltf"}), "a.gltf");
-  EXPECT_EQ(only_scene({"x/y/z/a.glb"}), "x/y/z/a.glb");
-  EXPECT_EQ(only_scene({"b/c.gltf", "a.gltf", "b/d.gltf"}), "a.gltf");
-  EXPECT_EQ(only_scene({"x/old/a.gltf", "x/a.gltf"}), "x/a.gltf");
+  EXPECT_EQ(find_scene({"a.gltf"}), "a.gltf");
+  EXPECT_EQ(find_scene({"x/y/z/a.glb"}), "x/y/z/a.glb");
+  EXPECT_EQ(find_scene({"b/c.gltf", "a.gltf", "b/d.gltf"}), "a.gltf");
+  EXPECT_EQ(find_scene({"x/old/a.gltf", "x/a.gltf"}), "x/a.gltf");
   for (const std::vector<std::filesystem::path>& scenes : std::vector<std::vector<std::filesystem::path>>{
            {}, {"a.gltf", "a.glb"}, {"x/a.gltf", "y/a.gltf"}, {"x/a.gltf", "xy/z/a.gltf"}, {"x/a.gltf", "y/z/a.gltf"}})
-    EXPECT_THROW((void)only_scene(scenes), Problem);
+    EXPECT_THROW((void)find_scene(scenes), Problem);
 }
 
 TEST(SafePath, TakesNamesApart) {

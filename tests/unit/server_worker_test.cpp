@@ -168,7 +168,7 @@ class JobServiceTest : public testing::Test {
     ::chmod(script.c_str(), 0755);
     options_.runner.sheaf = script.string();
     options_.jobs_at_once = 3;
-    options_.least_free_bytes = 0;
+    options_.min_free_bytes = 0;
   }
 
   std::string submit(JobService& service, const std::string& id) {
