@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The seam to cpp-httplib, all of it. The service accepts connections and reads heads and bodies itself, under deadlines
-// and limits that the library does not have (its thread waits for an idle client, so a thousand of them would need a
-// thousand threads). The library writes the replies: status line, headers, lengths, chunks, what HEAD leaves out.
+// The seam to cpp-httplib, all of it. The service accepts connections and reads heads and bodies itself, under
+// deadlines and limits that the library does not have (its thread waits for an idle client, so a thousand of them would
+// need a thousand threads). The library writes the replies: status line, headers, lengths, chunks, what HEAD leaves
+// out.
 //
 // Its public interface gives that only together with its own accept loop. So HttpServer derives from httplib::Server,
 // which offers two protected members to those who bring their own connections:
