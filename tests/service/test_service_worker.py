@@ -79,7 +79,7 @@ def test_garbage_is_logged_and_harmless(sheafd: Service) -> None:
     assert [f["frame"] for f in end["frames"]] == [0, 1]
     log = sheafd.http.get(f"/v1/jobs/{job}/log").text
     assert "not an event: hello" in log
-    assert "passwd is not there" in log
+    assert "passwd is missing" in log
     assert str(sheafd.data) not in log
 
 
