@@ -112,7 +112,7 @@ def test_a_place_turned_and_far_from_the_middle(sheaf, tmp_path):
         inner = glb.node("inner", (0, 0, 0), turn, (0.7, 0.7, 0.7), mesh=meshes[1])
         nodes.append(glb.node("outer", (7.3, -4.1, 2.9), children=[inner]))
         nodes = [nodes[k] for k in order]
-        eye = (*np.array((7.3, -4.1, 2.9)), 1, 2, 6)
+        eye = np.array((7.3, -4.1, 2.9)) + np.array((1, 2, 6))
         nodes.append(
             glb.node("camera", tuple(eye), look_at(eye, (7.3, -4.1, 2.9)), camera=glb.orthographic("camera", 0.5, 0.5))
         )

@@ -45,7 +45,7 @@ def sheets() -> bytes:
     x, y = np.meshgrid(np.linspace(-1, 1, SIDE + 1), np.linspace(-1, 1, SIDE + 1))
     points = np.stack([x, y, 0.1 * np.sin(5 * x)], axis=-1).reshape(-1, 3)
     corner = (np.arange(SIDE)[:, None] * (SIDE + 1) + np.arange(SIDE)).reshape(-1, 1)
-    triangles = np.concatenate([(*corner, 0, 1, SIDE + 2), (*corner, 0, SIDE + 2, SIDE + 1)])
+    triangles = np.concatenate([corner + np.array(offsets) for offsets in ((0, 1, SIDE + 2), (0, SIDE + 2, SIDE + 1))])
     sheet = glb.mesh(
         {"attributes": {"POSITION": glb.attribute(points, bounds=True)}, "indices": glb.indices(triangles)}
     )

@@ -73,7 +73,7 @@ class RenderSettings(TypedDict, total=False):
     primary: Literal["auto", "raster", "trace"] | None
     """First hits by the raster pass or traced; auto: raster, but where a pixel has more than eight triangles."""
     instances: Literal["auto", "copied", "shared"] | None
-    """Copied: triangles of each (fast); shared: posed when read (small); auto: shared from 8 million copied on."""
+    """Copied: triangles of each (fast); shared: transformed when read (small); auto: shared from 8 million on."""
     memory: int | None
     """Memory for rays and what else scales with the picture (16 to 1048576 MiB)."""
     device: str | int | None
@@ -185,7 +185,7 @@ SETTINGS: Mapping[str, Setting] = {
         "NAME",
         ("auto", "copied", "shared"),
         "auto",
-        "copied: triangles of each (fast); shared: posed when read (small); auto: shared from 8 million copied on",
+        "copied: triangles of each (fast); shared: transformed when read (small); auto: shared from 8 million on",
     ),
     "memory": Setting("integer", "MIB", (), 1024, "memory for rays and what else scales with the picture"),
     "device": Setting("name-or-index", "NAME|INDEX", (), None, "Vulkan device, by index or part of its name"),
