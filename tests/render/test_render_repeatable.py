@@ -85,7 +85,7 @@ def test_any_split_over_unlike_nodes(sheaf):
     (whole,) = sheaf.all([{"scene": "whitted", "options": ("--frames", "20-31"), "size": "48x27"}])
     dice = random.Random(5)
     shuffled = dice.sample(frames, len(frames))
-    parts = [shuffled[:1], shuffled[1:4], shuffled[4:9], shuffled[9:]]
+    parts = [shuffled[:1], shuffled[1:3], shuffled[3:6], shuffled[6:8], shuffled[8:10], shuffled[10:]]
     nodes = [
         ("hybrid", 16, "1"),
         ("bvh", 64, "3"),
