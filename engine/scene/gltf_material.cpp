@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <type_traits>
 
 #include "scene/gltf_image.hpp"
 
@@ -50,7 +51,7 @@ class MaterialReader {
     return extension(material, owner.data());
   }
 
-  // "materials[3]" of its own and its extensions' properties.
+  // How messages name a property: those of extensions stand beside the material's own.
   [[nodiscard]] std::string place_of(std::string_view owner, const char* key) const {
     return place_ + (owner == pbr_ ? std::string(".") + pbr_ : "") + "." + key;
   }
@@ -71,21 +72,19 @@ class MaterialReader {
     double low, high;
   };
 
-  void read_factor(const json& object, std::string_view owner, const char* key, Range range, float& out) {
-    const json* from = owner_of(object, owner);
-    const json* value = from != nullptr ? member(*from, key) : nullptr;
-    if (value != nullptr)
-      out = clamped(file_, place_of(owner, key), meant(key, value->get<double>()), range.low, range.high);
-  }
-
-  template <int N>
-  void read_factor(const json& object, std::string_view owner, const char* key, Range range, glm::vec<N, float>& out) {
+  // A number, or one for each component. KHR_materials_volume's, which the table does not have, are read by this too.
+  template <typename Factor>
+  void read_factor(const json& object, std::string_view owner, const char* key, Range range, Factor& out) {
     const json* from = owner_of(object, owner);
     const json* value = from != nullptr ? member(*from, key) : nullptr;
     if (value == nullptr) return;
-    for (int c = 0; c < N; ++c)
-      out[c] = clamped(file_, place_of(owner, key), (*value)[static_cast<std::size_t>(c)].template get<double>(),
-                       range.low, range.high);
+    const auto read = [&](const json& number) {
+      return clamped(file_, place_of(owner, key), meant(key, number.get<double>()), range.low, range.high);
+    };
+    if constexpr (std::is_same_v<Factor, float>)
+      out = read(*value);
+    else
+      for (int c = 0; c < Factor::length(); ++c) out[c] = read((*value)[static_cast<std::size_t>(c)]);
   }
 
   // KHR_materials_ior gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 %
@@ -115,11 +114,12 @@ class MaterialReader {
       if (!std::isfinite(out.emissive.x + out.emissive.y + out.emissive.z))
         file_.fail(place_ + ".emissiveStrength", "is too large");
     }
-    if (const json* e = extension(object, "KHR_materials_volume")) read_volume(*e, out);
+    if (const json* e = extension(object, "KHR_materials_volume")) read_volume(object, *e, out);
   }
 
-  void read_volume(const json& e, Material& out) {
-    out.thickness = clamped(file_, place_ + ".thicknessFactor", number_or(e, "thicknessFactor", 0), 0, any_);
+  void read_volume(const json& object, const json& e, Material& out) {
+    read_factor(object, "KHR_materials_volume", "thicknessFactor", {0, any_}, out.thickness);
+    read_factor(object, "KHR_materials_volume", "attenuationColor", {0, 1}, out.attenuation_color);
     if (e.contains("thicknessTexture")) {
       file_.warn(place_ + ".thicknessTexture", "is ignored: absorption follows the path through the closed mesh");
     }
@@ -130,12 +130,6 @@ class MaterialReader {
         file_.warn(place_ + ".attenuationDistance", "is 0, taken as infinite");
       } else {
         out.attenuation_distance = static_cast<float>(distance);
-      }
-    }
-    if (const json* color = member(e, "attenuationColor")) {
-      for (int c = 0; c < 3; ++c) {
-        out.attenuation_color[c] =
-            clamped(file_, place_ + ".attenuationColor", (*color)[static_cast<std::size_t>(c)].get<double>(), 0, 1);
       }
     }
   }
