@@ -16,7 +16,7 @@ namespace sheaf {
 
 class FrameFiles {
  public:
-  /// All but `fps` must outlive it.
+  /// `options` must outlive it.
   FrameFiles(const RenderOptions& options, const Scene& scene, const std::vector<std::uint32_t>& animations,
              const CameraSource& camera, double fps);
 

@@ -55,8 +55,8 @@ gpu::TextureUse lay_out_use(const Scene& scene, Images& images, const TextureUse
   return g;
 }
 
-// Stops (powers of two) of absorption a metre: color^(t/distance) = 2^(−stops·t). A color of 0 lets nothing through at
-// any distance: ABSORBS_ALL.
+// Stops (powers of two) of absorption per metre: color^(t/distance) = 2^(−stops·t). A color of 0 lets nothing through
+// at any distance: ABSORBS_ALL.
 glm::vec3 absorption(const Material& material) {
   glm::vec3 stops(0);
   if (!(material.attenuation_distance < std::numeric_limits<float>::infinity()) || material.attenuation_distance <= 0)

@@ -77,7 +77,7 @@ struct Material {
 #define FIELD(type, words, field, value, owner, key, low, high) type field;
   MATERIAL_FACTORS(FIELD)
 #undef FIELD
-  vec3 absorption;  // −log2(attenuation color) / distance: stops a metre, at most ABSORBS_ALL
+  vec3 absorption;  // −log2(attenuation color) / distance: stops per metre, at most ABSORBS_ALL
   uint flags;
   uint volume;      // 1 … 255 for volumes, else 0; volume n is material n − 1 of the buffer
   uint id;          // material of the file + 1
