@@ -6,6 +6,7 @@
 
 #include "scene/data_uri.hpp"
 #include "scene/gltf_file.hpp"
+#include "scene/gltf_meshopt.hpp"
 
 namespace sheaf {
 namespace {
@@ -22,6 +23,7 @@ struct Range {
   }
 };
 
+// Of a bufferView, or of the extension that says where its compressed bytes are.
 Range range_of(const json& view) {  // each number is at most 2^53: no sum overflows
   return {view.at("buffer").get<std::size_t>(), view.value("byteOffset", std::uint64_t{0}),
           view.at("byteLength").get<std::uint64_t>()};
@@ -43,12 +45,14 @@ std::vector<std::uint8_t> GltfBytes::from_uri(const GltfFile& file, const std::s
   return folder_.read(located.path, most);
 }
 
-// How much of each buffer's resource may be needed: what it says, or what its views reach to where that is more.
+// How much of each buffer's resource may be needed: what it says, or what its views reach to where that is more. A
+// compressed view needs nothing of the buffer that holds the same uncompressed.
 void GltfBytes::find_reach(const GltfFile& file) {
   const json& buffers = file.json.at("buffers");
   for (const json& one : buffers) reach_.push_back(one.at("byteLength").get<std::uint64_t>());
   for (const json& view : file.json.at("bufferViews")) {
-    const Range range = range_of(view);
+    const PackedView packed = packed_view(view);
+    const Range range = range_of(packed ? *packed.object : view);
     if (range.buffer < reach_.size())
       reach_[range.buffer] = std::max(reach_[range.buffer], range.offset + range.length);
   }
@@ -81,16 +85,31 @@ std::span<const std::uint8_t> GltfBytes::buffer(const GltfFile& file, std::size_
   return buffers_.emplace(index, std::move(resource)).first->second.bytes;
 }
 
+std::span<const std::uint8_t> GltfBytes::range(const GltfFile& file, const json& object, const std::string& place,
+                                               bool is_new) {
+  const Range range = range_of(object);
+  const std::span<const std::uint8_t> bytes = buffer(file, range.buffer);
+  if (!range.within(bytes.size())) file.fail(place, range.outside(bytes.size()));
+  const auto length = file.json.at("buffers").at(range.buffer).at("byteLength").get<std::uint64_t>();
+  if (is_new && !range.within(length) && bytes.size() > length)
+    file.warn(place, range.outside(length) + ", but not of what was read");
+  return bytes.subspan(range.offset, range.length);
+}
+
 BufferView GltfBytes::view(const GltfFile& file, std::size_t index) {
   file.require("bufferViews", index);
   const json& object = file.json.at("bufferViews").at(index);
-  const Range range = range_of(object);
-  const std::span<const std::uint8_t> bytes = buffer(file, range.buffer);
-  if (!range.within(bytes.size())) file.fail(at("bufferViews", index), range.outside(bytes.size()));
-  const auto length = file.json.at("buffers").at(range.buffer).at("byteLength").get<std::uint64_t>();
-  if (views_.insert(index).second && !range.within(length) && bytes.size() > length)
-    file.warn(at("bufferViews", index), range.outside(length) + ", but not of what was read");
-  return {bytes.subspan(range.offset, range.length), range.offset, object.value("byteStride", std::uint64_t{0})};
+  const bool is_new = views_.insert(index).second;
+  const std::string place = at("bufferViews", index);
+  const std::uint64_t offset = object.value("byteOffset", std::uint64_t{0});
+  const std::uint64_t stride = object.value("byteStride", std::uint64_t{0});
+  const PackedView packed = packed_view(object);
+  if (!packed) return {range(file, object, place, is_new), offset, stride};
+  if (const auto known = unpacked_.find(index); known != unpacked_.end()) return {known->second, offset, stride};
+  if (unpacked_.empty()) unpack_budget_ = file.limits.file_bytes;
+  const auto stream = range(file, *packed.object, place + "." + packed.extension, true);
+  return {unpacked_.emplace(index, unpack_view(file, index, packed, stream, unpack_budget_)).first->second, offset,
+          stride};
 }
 
 std::span<const std::uint8_t> GltfBytes::image(const GltfFile& file, std::size_t index) {
@@ -128,7 +147,8 @@ void GltfBytes::report_unused(const GltfFile& file) const {
   const json* views = member(file.json, "bufferViews");
   for (std::size_t i = 0; views && i < views->size(); ++i) {
     if (views_.contains(i) || file.broken.find("bufferViews", i)) continue;
-    const Range range = range_of((*views)[i]);
+    const PackedView packed = packed_view((*views)[i]);
+    const Range range = range_of(packed ? *packed.object : (*views)[i]);
     const auto length = file.json.at("buffers").at(range.buffer).at("byteLength").get<std::uint64_t>();
     if (!range.within(length)) file.warn(at("bufferViews", i), range.outside(length) + ", but nothing uses it");
   }

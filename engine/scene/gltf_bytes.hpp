@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string>
@@ -29,7 +30,8 @@ class GltfBytes {
   GltfBytes(SceneFolder folder, std::vector<std::uint8_t> scene_bytes, std::span<const std::uint8_t> binary)
       : folder_(std::move(folder)), scene_bytes_(std::move(scene_bytes)), binary_(binary) {}
 
-  /// A bufferView. Its buffer may hold more or fewer bytes than it says, as long as the view lies inside.
+  /// A bufferView, decompressed where an extension compresses it: a buffer that holds the same uncompressed is never
+  /// opened. Its buffer may hold more or fewer bytes than it says, as long as the view lies inside.
   [[nodiscard]] BufferView view(const GltfFile& file, std::size_t index);
 
   /// An image's encoded bytes.
@@ -49,13 +51,17 @@ class GltfBytes {
   [[nodiscard]] std::span<const std::uint8_t> buffer(const GltfFile& file, std::size_t index);
   [[nodiscard]] std::vector<std::uint8_t> from_uri(const GltfFile& file, const std::string& uri,
                                                    const std::string& place, std::uint64_t most);
+  [[nodiscard]] std::span<const std::uint8_t> range(const GltfFile& file, const nlohmann::json& object,
+                                                    const std::string& place, bool is_new);
   void find_reach(const GltfFile& file);
   void report_uri(const GltfFile& file, const std::string& collection, std::size_t index) const;
 
   SceneFolder folder_;
   std::vector<std::uint8_t> scene_bytes_;
   std::span<const std::uint8_t> binary_;
-  std::map<std::size_t, Resource> buffers_, images_;  // by index, those that were asked for
+  std::map<std::size_t, Resource> buffers_, images_;           // by index, those that were asked for
+  std::map<std::size_t, std::vector<std::uint8_t>> unpacked_;  // compressed views by index, those asked for
+  std::uint64_t unpack_budget_ = 0;                            // bytes that further ones may have
   std::set<std::size_t> views_;
   std::vector<std::uint64_t> reach_;
 };

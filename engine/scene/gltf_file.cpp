@@ -17,15 +17,17 @@
 namespace sheaf {
 namespace {
 
-constexpr std::array<std::string_view, 9> supported_extensions = {"KHR_materials_emissive_strength",
-                                                                  "KHR_materials_unlit",
-                                                                  "KHR_materials_transmission",
-                                                                  "KHR_materials_ior",
-                                                                  "KHR_materials_volume",
-                                                                  "KHR_texture_transform",
-                                                                  "KHR_lights_punctual",
-                                                                  "KHR_mesh_quantization",
-                                                                  "EXT_mesh_gpu_instancing"};
+constexpr std::array<std::string_view, 11> supported_extensions = {"KHR_materials_emissive_strength",
+                                                                   "KHR_materials_unlit",
+                                                                   "KHR_materials_transmission",
+                                                                   "KHR_materials_ior",
+                                                                   "KHR_materials_volume",
+                                                                   "KHR_texture_transform",
+                                                                   "KHR_lights_punctual",
+                                                                   "KHR_mesh_quantization",
+                                                                   "KHR_meshopt_compression",
+                                                                   "EXT_meshopt_compression",
+                                                                   "EXT_mesh_gpu_instancing"};
 
 bool is_supported(const std::string& name) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), name) != supported_extensions.end();

@@ -11,6 +11,16 @@ namespace {
 
 constexpr double any = schema_any, max_size = schema_max_size, max_int = schema_max_int;
 
+std::vector<SchemaRule> meshopt_rules() {
+  return {{"buffer", JsonKind::index, "buffers", -any, any, 0, true},
+          {"byteOffset", JsonKind::integer, "", 0, max_size},
+          {"byteLength", JsonKind::integer, "", 1, max_size, 0, true},
+          {"byteStride", JsonKind::integer, "", 2, 256, 0, true},
+          {"count", JsonKind::integer, "", 1, max_size, 0, true},
+          {"mode", JsonKind::text, "", -any, any, 0, true},
+          {"filter", JsonKind::text}};
+}
+
 std::vector<SchemaGroup> storage_rules() {
   return {
       {"",
@@ -40,7 +50,12 @@ std::vector<SchemaGroup> storage_rules() {
         {"byteOffset", JsonKind::integer, "", 0, max_size},
         {"byteLength", JsonKind::integer, "", 1, max_size, 0, true},
         {"byteStride", JsonKind::integer, "", 4, 252},
-        {"target", JsonKind::integer, "", 0, max_int}}},
+        {"target", JsonKind::integer, "", 0, max_int},
+        {"extensions", JsonKind::object}}},
+      {"bufferViews[].extensions",
+       {{"EXT_meshopt_compression", JsonKind::object}, {"KHR_meshopt_compression", JsonKind::object}}},
+      {"bufferViews[].extensions.EXT_meshopt_compression", meshopt_rules()},
+      {"bufferViews[].extensions.KHR_meshopt_compression", meshopt_rules()},
       {"accessors[]",
        {{"bufferView", JsonKind::index, "bufferViews"},
         {"byteOffset", JsonKind::integer, "", 0, max_size},

@@ -10,7 +10,7 @@ import pytest
 from rendering import ASSETS
 
 MODELS = sorted(path.relative_to(ASSETS).as_posix() for path in ASSETS.rglob("*") if path.suffix in (".glb", ".gltf"))
-REFUSED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}
+REFUSED = {"KHR_draco_mesh_compression"}
 TOO_MANY = {"MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb"}  # a million triangles, for software
 
 pytestmark = pytest.mark.skipif(not MODELS, reason=f"no models in {ASSETS}")
