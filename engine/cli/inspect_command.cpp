@@ -58,6 +58,7 @@ Json describe(const Scene& scene) {
           {"cameras", cameras},
           {"lights", lights},
           {"animations", animations},
+          {"extensions_read", scene.extensions_read},
           {"extensions_ignored", scene.extensions_ignored},
           {"warnings", scene.warnings}};
 }
@@ -106,6 +107,7 @@ int run_inspect(const std::string& path, const std::string& scene_name, bool jso
   print_list("animations", all["animations"]);
   print_list("needs", all["features"]);
   print_list("left out", all["left_out"]);
+  print_list("extensions", all["extensions_read"]);
   print_list("ignored extensions", all["extensions_ignored"]);
   print_list("warnings", all["warnings"]);
   return 0;

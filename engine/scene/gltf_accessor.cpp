@@ -121,6 +121,12 @@ Accessors::Source Accessors::window(const std::string& place, int view_index, st
   return {view.bytes.data() + offset, static_cast<std::size_t>(stride), count};
 }
 
+const DecodedElements* Accessors::decoded_elements(int index) const {
+  if (decoded_ == nullptr) return nullptr;
+  const auto found = decoded_->find(index);
+  return found == decoded_->end() ? nullptr : &found->second;
+}
+
 Accessors::Source Accessors::dense(int index) const {
   const tinygltf::Accessor& accessor = get(index);
   const std::string place = accessor_name(index);
@@ -129,6 +135,11 @@ Accessors::Source Accessors::dense(int index) const {
   const std::size_t component = component_size(accessor.componentType);
   if (component == 0)
     file_.fail(place + ".componentType", std::to_string(accessor.componentType) + " is none of glTF's");
+  if (const DecodedElements* decoded = decoded_elements(index)) {
+    const std::size_t element = component * static_cast<std::size_t>(width(index));
+    if (decoded->bytes.size() != element * decoded->count) file_.fail(place, "was decoded to another size");
+    return {decoded->bytes.data(), element, decoded->count};
+  }
   if (accessor.bufferView < 0) return {nullptr, 0, accessor.count};
   return window(place, accessor.bufferView, accessor.byteOffset, accessor.count,
                 component * static_cast<std::size_t>(width(index)), component);
@@ -168,7 +179,7 @@ std::vector<std::uint32_t> Accessors::sparse_indices(int index) const {
 template <class T>
 void Accessors::overlay_sparse(int index, int width, std::vector<T>& values) const {
   const tinygltf::Accessor& accessor = get(index);
-  if (!accessor.sparse.isSparse) return;
+  if (!accessor.sparse.isSparse || decoded_elements(index) != nullptr) return;
   const std::vector<std::uint32_t> indices = sparse_indices(index);
   const std::size_t component = component_size(accessor.componentType);
   const auto wide = static_cast<std::size_t>(width);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,18 @@ enum class Components {
   floats_quantized,   // FLOAT, or any 8/16-bit integers (KHR_mesh_quantization)
 };
 
+/// Elements that were compressed, without gaps, in their accessor's type.
+struct DecodedElements {
+  std::size_t count = 0;
+  std::vector<std::uint8_t> bytes;
+};
+using DecodedAccessors = std::map<int, DecodedElements>;  // by the accessor's index
+
 class Accessors {
  public:
   explicit Accessors(const GltfFile& file) : file_(file) {}
+  /// `decoded` is read instead of the bufferViews of the accessors that it has.
+  Accessors(const GltfFile& file, const DecodedAccessors& decoded) : file_(file), decoded_(&decoded) {}
 
   /// `width` numbers an element: 1 SCALAR … 4 VEC4, 16 MAT4 (column-major). Integers that are marked normalised are
   /// scaled to [0, 1] or [-1, 1] (glTF 2.0, 3.6.2.2). `use` says in errors what the accessor is for.
@@ -42,6 +52,7 @@ class Accessors {
     std::size_t stride = 0, count = 0;
   };
   [[nodiscard]] const tinygltf::Accessor& get(int accessor) const;
+  [[nodiscard]] const DecodedElements* decoded_elements(int accessor) const;
   [[nodiscard]] Source window(const std::string& place, int view, std::uint64_t offset, std::size_t count,
                               std::size_t element, std::size_t component) const;
   [[nodiscard]] Source dense(int accessor) const;
@@ -52,6 +63,7 @@ class Accessors {
   void check_finite(int accessor, int width, const std::vector<float>& values, const std::string& use) const;
 
   const GltfFile& file_;
+  const DecodedAccessors* decoded_ = nullptr;
 };
 
 }  // namespace sheaf

@@ -1,55 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "scene/gltf_file.hpp"
 
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "core/quote.hpp"
 #include "scene/gltf_container.hpp"
+#include "scene/gltf_extensions.hpp"
 #include "scene/gltf_mend.hpp"
 #include "scene/gltf_schema.hpp"
 #include "scene/scene_folder.hpp"
 
 namespace sheaf {
 namespace {
-
-constexpr std::array<std::string_view, 11> supported_extensions = {"KHR_materials_emissive_strength",
-                                                                   "KHR_materials_unlit",
-                                                                   "KHR_materials_transmission",
-                                                                   "KHR_materials_ior",
-                                                                   "KHR_materials_volume",
-                                                                   "KHR_texture_transform",
-                                                                   "KHR_lights_punctual",
-                                                                   "KHR_mesh_quantization",
-                                                                   "KHR_meshopt_compression",
-                                                                   "EXT_meshopt_compression",
-                                                                   "EXT_mesh_gpu_instancing"};
-
-bool is_supported(const std::string& name) {
-  return std::find(supported_extensions.begin(), supported_extensions.end(), name) != supported_extensions.end();
-}
-
-void check_extensions(GltfFile& file) {
-  if (const nlohmann::json* required = member(file.json, "extensionsRequired")) {
-    for (const auto& name : *required) {
-      if (!is_supported(name.get<std::string>())) {
-        file.fail("extensionsRequired", in_quotes(name.get<std::string>()) + " is not supported");
-      }
-    }
-  }
-  if (const nlohmann::json* used = member(file.json, "extensionsUsed")) {
-    for (const auto& entry : *used) {
-      const auto name = entry.get<std::string>();
-      if (is_supported(name) || std::ranges::count(file.extensions_ignored, name) > 0) continue;
-      file.extensions_ignored.push_back(name);
-      file.warn("extensionsUsed", in_quotes(name) + " is not supported and is ignored");
-    }
-  }
-}
 
 // tinygltf gives several lines: the first one says what failed.
 std::string first_line(const std::string& text) {
@@ -79,6 +43,41 @@ class Without {
   std::map<std::string, nlohmann::json> kept_;
 };
 
+// Compressed primitives: a tinygltf that was built with Draco would decompress them by itself.
+class WithoutPrimitiveExtensions {
+ public:
+  explicit WithoutPrimitiveExtensions(nlohmann::json& document) : document_(document) {
+    each([&](nlohmann::json& primitive) {
+      nlohmann::json& kept = kept_.emplace_back();
+      const auto found = primitive.find("extensions");
+      if (found == primitive.end()) return;
+      kept = std::move(*found);
+      primitive.erase(found);
+    });
+  }
+  ~WithoutPrimitiveExtensions() {
+    auto kept = kept_.begin();
+    each([&](nlohmann::json& primitive) {
+      if (!kept->is_null()) primitive["extensions"] = std::move(*kept);
+      ++kept;
+    });
+  }
+  WithoutPrimitiveExtensions(const WithoutPrimitiveExtensions&) = delete;
+  WithoutPrimitiveExtensions& operator=(const WithoutPrimitiveExtensions&) = delete;
+
+ private:
+  template <class Change>
+  void each(const Change& change) {
+    const auto meshes = document_.find("meshes");
+    if (meshes == document_.end()) return;
+    for (auto& mesh : *meshes)
+      for (auto& primitive : mesh["primitives"]) change(primitive);
+  }
+
+  nlohmann::json& document_;
+  std::vector<nlohmann::json> kept_;
+};
+
 // Indices are put where they belong afterwards: tinygltf refuses those of accessors without a bufferView.
 std::vector<std::vector<int>> take_indices(nlohmann::json& document) {
   std::vector<std::vector<int>> all;
@@ -98,6 +97,7 @@ std::vector<std::vector<int>> take_indices(nlohmann::json& document) {
 // that lie in the scene's folder), cameras, animations and lights.
 void read_model(GltfFile& file) {
   const Without without(file.json);
+  const WithoutPrimitiveExtensions without_extensions(file.json);
   const std::vector<std::vector<int>> indices = take_indices(file.json);
   const std::string text = file.json.dump();
   if (text.size() > std::numeric_limits<unsigned>::max()) throw limit_error(file.path, "is larger than 4 GiB");

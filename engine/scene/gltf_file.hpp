@@ -29,7 +29,7 @@ struct GltfFile {
   std::unique_ptr<GltfBytes> bytes;
   BrokenObjects broken;
   mutable WarningList warnings;
-  std::vector<std::string> extensions_ignored;
+  std::vector<std::string> extensions_read, extensions_ignored;
 
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
     throw input_error(path + ": " + place, reason);

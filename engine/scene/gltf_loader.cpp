@@ -65,6 +65,7 @@ Scene build_scene(GltfFile& file, const std::string& scene_selector) {
   report_broken(file);
   scene.sha256 = file.bytes->sha256();
   scene.warnings = file.warnings.take();
+  scene.extensions_read = std::move(file.extensions_read);
   scene.extensions_ignored = std::move(file.extensions_ignored);
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "scene/gltf_deformation.hpp"
+#include "scene/gltf_draco.hpp"
 #include "scene/mesh_attributes.hpp"
 
 namespace sheaf {
@@ -24,12 +25,12 @@ std::vector<glm::vec4> read_colors(const PrimitiveReader& in) {
 
 std::vector<std::uint32_t> read_indices(const PrimitiveReader& in) {
   std::vector<std::uint32_t> indices;
-  if (in.primitive.indices < 0) {
+  if (in.primitive.indices < 0 && !in.decoded_indices) {
     indices.resize(in.vertices);
     for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
     return indices;
   }
-  indices = in.accessors.integers(in.primitive.indices, 1, true, "indices");
+  indices = in.decoded_indices ? *in.decoded_indices : in.accessors.integers(in.primitive.indices, 1, true, "indices");
   for (const std::uint32_t index : indices) {
     if (index >= in.vertices) {
       in.file.fail(in.place,
@@ -42,7 +43,7 @@ std::vector<std::uint32_t> read_indices(const PrimitiveReader& in) {
 // Strips and fans as glTF 2.0, 3.7.2.1 numbers their triangles, so that all face the same way.
 void assemble_triangles(const PrimitiveReader& in, Mesh& mesh) {
   const std::vector<std::uint32_t> i = read_indices(in);
-  const bool list = in.primitive.mode == TINYGLTF_MODE_TRIANGLES;
+  const bool list = in.primitive.mode == TINYGLTF_MODE_TRIANGLES || in.decoded_indices;
   const std::size_t count = list ? i.size() / 3 : i.size() < 3 ? 0 : i.size() - 2;
   if (list && i.size() % 3 != 0)
     in.file.warn(in.place, "the number of indices is not a multiple of 3, the rest is ignored");
@@ -173,7 +174,6 @@ std::vector<bool> meshes_with_skin(const GltfFile& file, const Scene& scene) {
 }  // namespace
 
 std::vector<MeshEntry> load_meshes(GltfFile& file, const std::vector<bool>& wanted, Scene& scene) {
-  const Accessors accessors(file);
   const std::vector<bool> skinned = meshes_with_skin(file, scene);
   std::vector<MeshEntry> entries(file.model.meshes.size());
   std::uint64_t triangles = 0, vertices = 0;
@@ -183,8 +183,11 @@ std::vector<MeshEntry> load_meshes(GltfFile& file, const std::vector<bool>& want
     file.require("meshes", m);
     const tinygltf::Mesh& source = file.model.meshes[m];
     for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-      PrimitiveReader in{file, accessors, source.primitives[p], at("meshes", m) + "." + at("primitives", p),
-                         0,    skinned[m]};
+      const std::string place = at("meshes", m) + "." + at("primitives", p);
+      const std::optional<DracoPrimitive> draco = read_draco(file, m, p, place);
+      const Accessors accessors = draco ? Accessors(file, draco->accessors) : Accessors(file);
+      PrimitiveReader in{
+          file, accessors, source.primitives[p], place, 0, skinned[m], draco ? &draco->indices : nullptr};
       if (const int position = in.accessor("POSITION"); position >= 0) in.vertices = accessors.count(position);
       const int index = in.primitive.material;
       // The default material stands after the file's own.

@@ -19,7 +19,8 @@ struct PrimitiveReader {
   const tinygltf::Primitive& primitive;
   std::string place;
   std::size_t vertices = 0;
-  bool skinned = false;  // a node gives the mesh a skin
+  bool skinned = false;                                         // a node gives the mesh a skin
+  const std::vector<std::uint32_t>* decoded_indices = nullptr;  // of a compressed primitive: a list of triangles
 
   [[nodiscard]] int accessor(const char* attribute) const {
     const auto found = primitive.attributes.find(attribute);

@@ -171,6 +171,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
   std::vector<std::string> warnings;            // one line each
+  std::vector<std::string> extensions_read;     // in extensionsUsed, and taken into account
   std::vector<std::string> extensions_ignored;  // in extensionsUsed, not supported
 };
 

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene/gltf_file.hpp"
+
+namespace sheaf {
+
+/// Sorts what the file says it uses into extensions that are read and that are ignored, with a warning for each of the
+/// latter; refuses what it requires and this build cannot read.
+void check_extensions(GltfFile& file);
+
+}  // namespace sheaf
