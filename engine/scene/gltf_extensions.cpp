@@ -38,10 +38,11 @@ constexpr Extension readable[] = {
     {"EXT_meshopt_compression"},
     {"KHR_draco_mesh_compression", draco_lacks},
     {"EXT_mesh_gpu_instancing"},
+    {"EXT_texture_webp", webp_lacks},
 };
 
 // Why an extension is not read; empty where it is.
-std::string fault_of(const std::string& name) {
+std::string fault_of(std::string_view name) {
   const auto* const found = std::ranges::find(readable, name, &Extension::name);
   if (found == std::end(readable)) return "is not supported";
   if (found->lacks.empty()) return {};
@@ -49,6 +50,8 @@ std::string fault_of(const std::string& name) {
 }
 
 }  // namespace
+
+bool reads_extension(std::string_view name) { return fault_of(name).empty(); }
 
 void check_extensions(GltfFile& file) {
   if (const nlohmann::json* required = member(file.json, "extensionsRequired")) {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <thread>
 
+#include "scene/image_codec.hpp"
+
 namespace sheaf {
 namespace {
 
@@ -31,26 +33,54 @@ const char* format_of(Bytes bytes) {
   return "unknown";
 }
 
+// How formats other than PNG and JPEG are read, and without which library they cannot be.
+struct Codec {
+  std::string_view format;
+  ReadImageHead head = nullptr;
+  DecodeImage decode = nullptr;
+  const char* lacks = nullptr;
+};
+
+constexpr Codec codecs[] = {
+#ifdef SHEAF_HAS_WEBP
+    {"WebP", read_webp_head, decode_webp},
+#else
+    {"WebP", nullptr, nullptr, "libwebp"},
+#endif
+};
+
+const Codec* codec_of(std::string_view format) {
+  const auto* const found = std::ranges::find(codecs, format, &Codec::format);
+  return found == std::end(codecs) ? nullptr : found;
+}
+
+ImageHead read_stb_head(Bytes bytes, const std::string& format) {
+  int width = 0, height = 0, channels = 0;
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
+      !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) || width <= 0 ||
+      height <= 0)
+    return {0, 0, "is not a valid " + format + " file"};
+  return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+}
+
 // Checks the header, so that what decoding will allocate is known before it starts.
 std::uint64_t decoded_size(const GltfFile& file, std::uint32_t index) {
   const Bytes bytes = file.bytes->image(file, index);
   const std::string place = at("images", index);
   if (bytes.empty()) file.fail(place, "is empty");
   const std::string format = format_of(bytes);
-  if (format != "PNG" && format != "JPEG")
-    file.fail(place, format + " images are not supported, only PNG and JPEG are");
-  int width = 0, height = 0, channels = 0;
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
-      !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) || width <= 0 ||
-      height <= 0) {
-    file.fail(place, "is not a valid " + format + " file");
+  const Codec* const codec = codec_of(format);
+  if (codec == nullptr && format != "PNG" && format != "JPEG") file.fail(place, format + " images are not supported");
+  if (codec != nullptr && codec->lacks != nullptr)
+    file.fail(place, format + " images are not supported: this build lacks " + codec->lacks);
+  const ImageHead head = codec != nullptr ? codec->head(bytes) : read_stb_head(bytes, format);
+  if (!head.fault.empty()) file.fail(place, head.fault);
+  const std::uint32_t most = file.limits.image_side;
+  if (head.width > most || head.height > most) {
+    file.over_limit(place, std::to_string(head.width) + " x " + std::to_string(head.height) +
+                               " pixels, a side may have " + std::to_string(most));
   }
-  const auto most = static_cast<std::int64_t>(file.limits.image_side);
-  if (width > most || height > most) {
-    file.over_limit(place, std::to_string(width) + " x " + std::to_string(height) + " pixels, a side may have " +
-                               std::to_string(most));
-  }
-  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
+  return std::uint64_t{head.width} * head.height * 4;
 }
 
 // stb_image keeps a thread's last reason and gives none for some failures: what it says of no bytes at all stands for
@@ -62,8 +92,8 @@ const char* no_reason() {
   return stbi_failure_reason();
 }
 
-Image decode(const GltfFile& file, std::uint32_t index) {
-  const Bytes bytes = file.bytes->image(file, index);  // `decoded_size` asked first: no thread reads a file
+// Why it cannot be decoded, or nothing.
+std::string decode_stb(Bytes bytes, Image& image) {
   const char* const none = no_reason();
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
@@ -71,14 +101,29 @@ Image decode(const GltfFile& file, std::uint32_t index) {
       &stbi_image_free);
   if (!pixels) {
     const char* const reason = stbi_failure_reason();
-    file.fail(at("images", index), std::string("cannot be decoded: ") + (reason == none ? "it is damaged" : reason));
+    return std::string("cannot be decoded: ") + (reason == none ? "it is damaged" : reason);
   }
-  Image image;
-  const nlohmann::json& source = file.json["images"][index];
-  image.name = source.value("name", source.value("uri", ""));
   image.width = static_cast<std::uint32_t>(width);
   image.height = static_cast<std::uint32_t>(height);
   image.rgba.assign(pixels.get(), pixels.get() + std::size_t{image.width} * image.height * 4);
+  return {};
+}
+
+Image decode(const GltfFile& file, std::uint32_t index) {
+  const Bytes bytes = file.bytes->image(file, index);  // `decoded_size` asked first: no thread reads a file
+  Image image;
+  const nlohmann::json& source = file.json["images"][index];
+  image.name = source.value("name", source.value("uri", ""));
+  std::string fault;
+  if (const Codec* const codec = codec_of(format_of(bytes))) {
+    const ImageHead head = codec->head(bytes);
+    image.width = head.width;
+    image.height = head.height;
+    fault = codec->decode(bytes, image);
+  } else {
+    fault = decode_stb(bytes, image);
+  }
+  if (!fault.empty()) file.fail(at("images", index), fault);
   return image;
 }
 

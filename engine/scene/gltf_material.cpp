@@ -7,6 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "scene/gltf_extensions.hpp"
 #include "scene/gltf_image.hpp"
 
 namespace sheaf {
@@ -165,19 +166,31 @@ class MaterialReader {
     if (!is_new) return known->second;
     file_.require("textures", index);
     const tinygltf::Texture& source = file_.model.textures[index];
-    if (source.source < 0) {
+    const std::uint32_t read = image_of(index);
+    if (read == none) {
       file_.warn(at("textures", index), "has no image that can be read and is ignored");
       return none;
     }
     Texture out;
-    const auto [image, fresh] =
-        images_.try_emplace(static_cast<std::uint32_t>(source.source), static_cast<std::uint32_t>(image_order_.size()));
-    if (fresh) image_order_.push_back(static_cast<std::uint32_t>(source.source));
+    const auto [image, fresh] = images_.try_emplace(read, static_cast<std::uint32_t>(image_order_.size()));
+    if (fresh) image_order_.push_back(read);
     out.image = image->second;
     if (source.sampler >= 0) read_sampler(static_cast<std::size_t>(source.sampler), out);
     known->second = static_cast<std::uint32_t>(scene_.textures.size());
     scene_.textures.push_back(out);
     return known->second;
+  }
+
+  // That of an extension before the texture's own, which is there for readers that lack the extension.
+  [[nodiscard]] std::uint32_t image_of(std::size_t index) const {
+    const json& texture = file_.json["textures"][index];
+    for (const char* name : {"EXT_texture_webp"}) {
+      const json* source = reads_extension(name) ? extension(texture, name) : nullptr;
+      if (source != nullptr) source = member(*source, "source");
+      if (source != nullptr) return source->get<std::uint32_t>();
+    }
+    const int own = file_.model.textures[index].source;
+    return own < 0 ? none : static_cast<std::uint32_t>(own);
   }
 
   void read_sampler(std::size_t index, Texture& out) const {

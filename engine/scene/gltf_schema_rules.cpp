@@ -84,7 +84,12 @@ std::vector<SchemaGroup> storage_rules() {
         {"minFilter", JsonKind::integer, "", 0, max_int},
         {"wrapS", JsonKind::integer, "", 0, max_int},
         {"wrapT", JsonKind::integer, "", 0, max_int}}},
-      {"textures[]", {{"sampler", JsonKind::index, "samplers"}, {"source", JsonKind::index, "images"}}},
+      {"textures[]",
+       {{"sampler", JsonKind::index, "samplers"},
+        {"source", JsonKind::index, "images"},
+        {"extensions", JsonKind::object}}},
+      {"textures[].extensions", {{"EXT_texture_webp", JsonKind::object}}},
+      {"textures[].extensions.EXT_texture_webp", {{"source", JsonKind::index, "images"}}},
   };
 }
 
