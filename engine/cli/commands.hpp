@@ -10,7 +10,7 @@
 namespace sheaf {
 
 int run_render(RenderOptions& options, Progress& progress);
-int run_inspect(const std::string& scene, const std::string& scene_name, bool json);
+int run_inspect(const std::string& path, const std::string& scene_name, const std::string& variant, bool json);
 int run_devices(bool json);
 int run_options(bool json);
 

@@ -19,6 +19,7 @@ nlohmann::ordered_json decisive_settings(const RenderOptions& options, const std
   auto settings = settings_json(options);
   settings["fps"] = fps;
   if (const std::string& name = options.scene_name; !name.empty()) settings["scene-name"] = name;
+  if (const std::string& name = options.variant; !name.empty()) settings["variant"] = name;
   settings["animation"] = animations;
   settings["camera"] = camera.identity();
   for (const char* name : {"aov", "compression"}) settings[name] = find_setting(name)->access.show(options);

@@ -58,6 +58,7 @@ Json describe(const Scene& scene) {
           {"cameras", cameras},
           {"lights", lights},
           {"animations", animations},
+          {"variants", scene.variants},
           {"extensions_read", scene.extensions_read},
           {"extensions_ignored", scene.extensions_ignored},
           {"warnings", scene.warnings}};
@@ -81,8 +82,8 @@ void print_list(const char* title, const Json& list) {
 
 }  // namespace
 
-int run_inspect(const std::string& path, const std::string& scene_name, bool json) {
-  const Scene scene = load_gltf(path, scene_name);
+int run_inspect(const std::string& path, const std::string& scene_name, const std::string& variant, bool json) {
+  const Scene scene = load_gltf(path, {scene_name, variant});
   const auto animations = select_animations(scene, {});
   const CameraSource camera(scene, animations, {}, {}, 16.0 / 9.0);
   RenderSettings settings;
@@ -105,6 +106,7 @@ int run_inspect(const std::string& path, const std::string& scene_name, bool jso
   print_list("cameras", all["cameras"]);
   print_list("lights", all["lights"]);
   print_list("animations", all["animations"]);
+  print_list("variants", all["variants"]);
   print_list("needs", all["features"]);
   print_list("left out", all["left_out"]);
   print_list("extensions", all["extensions_read"]);

@@ -43,11 +43,12 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
   app.require_subcommand(1);
   auto* render = app.add_subcommand("render", "render frames to OpenEXR");
   const sheaf::RenderLine line(*render);
-  std::string scene, scene_name;
+  std::string scene, scene_name, variant;
   bool inspect_json = false, devices_json = false, options_json = false;
   auto* inspect = app.add_subcommand("inspect", "what a scene holds, what it needs, what will be left out and why");
   inspect->add_option("scene", scene, "a .glb or .gltf file")->required();
   inspect->add_option("--scene-name", scene_name, "which glTF scene: name or index");
+  inspect->add_option("--variant", variant, "which variant of the materials: name or index");
   inspect->add_flag("--json", inspect_json);
   auto* devices = app.add_subcommand("devices", "Vulkan devices and what each can do");
   devices->add_flag("--json", devices_json);
@@ -62,7 +63,7 @@ int run(int argc, char** argv, std::unique_ptr<sheaf::Progress>& progress) {
   }
   if (devices->parsed()) return sheaf::run_devices(devices_json);
   if (settings->parsed()) return sheaf::run_options(options_json);
-  if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, inspect_json);
+  if (inspect->parsed()) return sheaf::run_inspect(scene, scene_name, variant, inspect_json);
   progress = std::make_unique<sheaf::Progress>(line.progress());
   sheaf::RenderOptions options = line.options();
   return sheaf::run_render(options, *progress);

@@ -73,7 +73,7 @@ class Job {
 Job::Job(RenderOptions& options, Progress& progress)
     : options_(options),
       progress_(progress),
-      scene_(load_gltf(options.scene, options.scene_name)),
+      scene_(load_gltf(options.scene, {options.scene_name, options.variant})),
       animations_(select_animations(scene_, options.animation)),
       camera_(scene_, animations_, options.camera, options.camera_node,
               static_cast<double>(options.settings.width) / options.settings.height),

@@ -116,8 +116,8 @@ void bind_meshes(GltfFile& file, const std::vector<MeshEntry>& meshes, Scene& sc
   std::uint64_t instances = 0;
   for (const std::uint32_t i : scene.order) {
     const tinygltf::Node& source = file.model.nodes[i];
-    if (source.mesh < 0) continue;
     Node& node = scene.nodes[i];
+    if (source.mesh < 0 || !node.shown) continue;
     const MeshEntry& mesh = meshes[static_cast<std::size_t>(source.mesh)];
     node.first_mesh = mesh.first;
     node.mesh_count = mesh.count;

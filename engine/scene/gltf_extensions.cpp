@@ -39,12 +39,35 @@ constexpr Extension readable[] = {
     {"KHR_draco_mesh_compression", draco_lacks},
     {"EXT_mesh_gpu_instancing"},
     {"EXT_texture_webp", webp_lacks},
+    {"KHR_materials_variants"},
+    {"KHR_node_visibility"},
+    {"MSFT_lod"},
+};
+
+// Names that files use though no specification of the registry defines them (yet, or any more).
+constexpr std::string_view drafts[] = {
+    "KHR_materials_coat",
+    "KHR_materials_fuzz",
+    "KHR_materials_diffuse_roughness",
+    "KHR_materials_volume_scatter",
+    "KHR_materials_sss",
+    "KHR_materials_subsurface",
+    "KHR_materials_retroreflection",
+    "KHR_texture_procedurals",
+    "KHR_interactivity",
+    "KHR_node_selectability",
+    "KHR_node_hoverability",
+    "KHR_audio_emitter",
+    "KHR_gaussian_splatting",
+    "KHR_physics_rigid_bodies",
+    "EXT_texture_procedurals_mx_1_39",
 };
 
 // Why an extension is not read; empty where it is.
 std::string fault_of(std::string_view name) {
   const auto* const found = std::ranges::find(readable, name, &Extension::name);
-  if (found == std::end(readable)) return "is not supported";
+  if (found == std::end(readable))
+    return std::ranges::count(drafts, name) > 0 ? "is a draft, which is not supported" : "is not supported";
   if (found->lacks.empty()) return {};
   return "is not supported: this build lacks " + std::string(found->lacks);
 }

@@ -7,14 +7,16 @@
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
 #include "scene/gltf_nodes.hpp"
+#include "scene/gltf_variants.hpp"
 
 namespace sheaf {
 namespace {
 
-// Meshes that no node of the chosen scene shows are never read.
+// Meshes that no visible node of the chosen scene has are never read.
 std::vector<bool> meshes_in_use(const GltfFile& file, const Scene& scene) {
   std::vector<bool> used(file.model.meshes.size(), false);
   for (const std::uint32_t node : scene.order) {
+    if (!scene.nodes[node].shown) continue;
     if (const int mesh = file.model.nodes[node].mesh; mesh >= 0) used[static_cast<std::size_t>(mesh)] = true;
   }
   return used;
@@ -48,13 +50,17 @@ void report_broken(const GltfFile& file) {
   }
 }
 
-Scene build_scene(GltfFile& file, const std::string& scene_selector) {
+Scene build_scene(GltfFile& file, const SceneChoice& choice) {
   Scene scene;
   scene.path = file.path;
+  scene.variants = variant_names(file);
+  choose_variant(file, choice.variant);
   load_cameras(file, scene);
   load_lights(file, scene);
   load_nodes(file, scene);
-  select_scene(file, scene_selector, scene);
+  select_scene(file, choice.scene, scene);
+  hide_nodes(scene);
+  report_levels_of_detail(file, scene);
   require_nodes(file, scene);
   const std::vector<bool> used = meshes_in_use(file, scene);
   load_materials(file, materials_in_use(file, used), scene);
@@ -72,10 +78,10 @@ Scene build_scene(GltfFile& file, const std::string& scene_selector) {
 
 }  // namespace
 
-Scene load_gltf(const std::string& path, const std::string& scene_selector, const LoadLimits& limits) {
+Scene load_gltf(const std::string& path, const SceneChoice& choice, const LoadLimits& limits) {
   try {
     GltfFile file = open_gltf(path, limits);
-    return build_scene(file, scene_selector);
+    return build_scene(file, choice);
   } catch (const std::bad_alloc&) {
     throw limit_error(path, "does not fit in memory");
   } catch (const nlohmann::json::exception& error) {

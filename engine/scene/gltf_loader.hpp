@@ -17,11 +17,14 @@ struct LoadLimits {                                   // what one scene file may
   std::uint32_t image_side = 16384;
 };
 
+struct SceneChoice {
+  std::string scene = {};    // empty for the file's default scene (else its first), a name, or an index
+  std::string variant = {};  // of KHR_materials_variants: empty for none, a name, or an index
+};
+
 /// Reads a .glb or .gltf (buffers and images beside it or embedded) into a checked Scene.
-/// `scene_selector`: empty for the file's default scene (else its first), a name, or an index.
 /// Throws Error{input} naming the file, the object ("accessors[3]") and the reason; Error{io} where it can't be read;
 /// Error{limit} past a limit. Unsupported names in extensionsRequired are Error{input}.
-[[nodiscard]] Scene load_gltf(const std::string& path, const std::string& scene_selector = {},
-                              const LoadLimits& limits = {});
+[[nodiscard]] Scene load_gltf(const std::string& path, const SceneChoice& choice = {}, const LoadLimits& limits = {});
 
 }  // namespace sheaf

@@ -108,6 +108,9 @@ class MaterialReader {
 
   void read_extensions(const json& object, Material& out) {
     out.unlit = extension(object, "KHR_materials_unlit") != nullptr;
+    if (const json* levels = extension(object, "MSFT_lod"))
+      file_.warn(place_ + ".MSFT_lod",
+                 "the finest of " + std::to_string(levels->at("ids").size() + 1) + " levels of detail is drawn");
     if (const json* e = extension(object, "KHR_materials_emissive_strength")) {
       const float strength =
           clamped(file_, place_ + ".emissiveStrength", number_or(*e, "emissiveStrength", 1), 0, any_);

@@ -166,7 +166,8 @@ std::vector<bool> meshes_with_skin(const GltfFile& file, const Scene& scene) {
   std::vector<bool> skinned(file.model.meshes.size(), false);
   for (const std::uint32_t index : scene.order) {
     const tinygltf::Node& node = file.model.nodes[index];
-    if (node.mesh >= 0 && node.skin >= 0) skinned[static_cast<std::size_t>(node.mesh)] = true;
+    if (node.mesh >= 0 && node.skin >= 0 && scene.nodes[index].shown)
+      skinned[static_cast<std::size_t>(node.mesh)] = true;
   }
   return skinned;
 }

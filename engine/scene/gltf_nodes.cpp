@@ -91,6 +91,8 @@ void load_nodes(GltfFile& file, Scene& scene) {
     if (const auto* light = extension(file.json["nodes"][i], "KHR_lights_punctual")) {
       node.light = light->at("light").get<std::uint32_t>();
     }
+    if (const auto* visibility = extension(file.json["nodes"][i], "KHR_node_visibility"))
+      node.visible = visibility->value("visible", true);
     read_transform(file, source, at("nodes", i), node);
   }
   link_parents(file, scene);
@@ -121,6 +123,22 @@ void select_scene(GltfFile& file, const std::string& selector, Scene& scene) {
   for (std::size_t i = 0; i < scene.order.size(); ++i) {
     const std::vector<std::uint32_t>& children = scene.nodes[scene.order[i]].children;
     scene.order.insert(scene.order.end(), children.begin(), children.end());
+  }
+}
+
+void hide_nodes(Scene& scene) {
+  for (const std::uint32_t i : scene.order) {  // parents before children
+    Node& node = scene.nodes[i];
+    node.shown = node.visible && (node.parent == none || scene.nodes[node.parent].shown);
+    if (!node.shown) node.light = none;
+  }
+}
+
+void report_levels_of_detail(const GltfFile& file, const Scene& scene) {
+  for (const std::uint32_t i : scene.order) {
+    if (const auto* levels = extension(file.json["nodes"][i], "MSFT_lod"))
+      file.warn(at("nodes", i) + ".MSFT_lod",
+                "the finest of " + std::to_string(levels->at("ids").size() + 1) + " levels of detail is drawn");
   }
 }
 

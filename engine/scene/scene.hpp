@@ -132,6 +132,8 @@ struct Node {
   std::uint32_t first_mesh = 0, mesh_count = 0;  // range in Scene::meshes: the primitives of its glTF mesh
   std::uint32_t skin = none, camera = none, light = none;
   std::vector<double> morph_weights;  // rest weights: the node's, else the mesh's
+  bool visible = true;                // KHR_node_visibility, of the node itself
+  bool shown = true;                  // it and all it hangs from are visible; else it has no mesh and no light
   std::vector<glm::dmat4> instances;  // EXT_mesh_gpu_instancing: each relative to the node; empty: one, identity
 };
 
@@ -170,6 +172,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
+  std::vector<std::string> variants;            // names of KHR_materials_variants
   std::vector<std::string> warnings;            // one line each
   std::vector<std::string> extensions_read;     // in extensionsUsed, and taken into account
   std::vector<std::string> extensions_ignored;  // in extensionsUsed, not supported

@@ -58,8 +58,9 @@ SceneInspector::Inspection SceneInspector::inspect(const std::filesystem::path& 
                             }};
   const std::chrono::seconds wall(limits_.inspect_seconds);
   std::vector<std::string> command{sheaf_, "inspect", scene.string(), "--json"};
-  std::ranges::copy_if(arguments, std::back_inserter(command),
-                       [](const std::string& argument) { return argument.starts_with("--scene-name="); });
+  std::ranges::copy_if(arguments, std::back_inserter(command), [](const std::string& argument) {
+    return argument.starts_with("--scene-name=") || argument.starts_with("--variant=");
+  });
   found.ending = run_worker(command, output, stop_, {std::chrono::milliseconds(0), wall, &confinement});
   return found;
 }

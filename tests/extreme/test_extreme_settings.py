@@ -20,6 +20,7 @@ BAD = {
     "camera-node": ("99", "-1", "nobody"),
     "animation": ("99", "-1", "walk"),
     "scene-name": ("99", "-1", "nowhere"),
+    "variant": ("99", "-1", "red"),
     "device": ("99", "no such device"),
     "sort": ("1", ""),
     "primary": ("", "Raster"),

@@ -31,6 +31,7 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
         "memory": 512,
         "device": 0,
         "scene-name": "Night",
+        "variant": 1,
         "environment": [0.5, 1, 2.5],
         "count": "on",
         "opaque": True,
@@ -48,7 +49,7 @@ def test_settings_become_the_workers_arguments(sheafd: Service) -> None:
             "--quality=draft", "--spp=adaptive:0.01:64", "--filter=triangle", "--depth=3", "--cutoff=0.01",
             "--strategy=hybrid", "--sort=on", "--primary=trace", "--instances=shared", "--z-background=inf",
             "--aov=Z,N", "--compression=piz", "--name=shot.####.exr", "--memory=512", "--device=0", "--opaque",
-            "--scene-name=Night", "--environment=0.5,1,2.5", "--count=on",
+            "--scene-name=Night", "--variant=1", "--environment=0.5,1,2.5", "--count=on",
         ]
     )  # fmt: skip
     assert "--preview" not in told

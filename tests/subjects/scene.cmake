@@ -2,6 +2,7 @@
 sheaf_test(gltf_loader_test sheaf_scene)
 sheaf_test(gltf_mesh_test sheaf_scene)
 sheaf_test(meshopt_test sheaf_scene)
+sheaf_test(gltf_extensions_test sheaf_scene)
 sheaf_test(gltf_malformed_test sheaf_scene)
 sheaf_test(gltf_file_test sheaf_scene)
 sheaf_test(pose_test sheaf_scene)

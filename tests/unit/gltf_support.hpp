@@ -14,7 +14,7 @@ namespace sheaf::test {
 
 inline Scene load(GltfBuilder& builder, const std::string& selector = {}, const LoadLimits& limits = {}) {
   const TempFolder folder;
-  return load_gltf(folder.write("scene.gltf", builder.text()), selector, limits);
+  return load_gltf(folder.write("scene.gltf", builder.text()), {selector, {}}, limits);
 }
 
 /// A mesh's vertex in object space.

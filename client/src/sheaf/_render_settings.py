@@ -18,6 +18,8 @@ class RenderSettings(TypedDict, total=False):
     """A camera of the scene; default the first, else the scene is framed whole."""
     scene_name: str | int | None
     """Which scene of the file; default the file's own."""
+    variant: str | int | None
+    """Which of the materials' variants that the file has (KHR_materials_variants); default none."""
     frames: str | int | Iterable[int] | None
     """Which frames are rendered."""
     fps: float | str | None
@@ -113,6 +115,13 @@ SETTINGS: Mapping[str, Setting] = {
         "a camera of the scene; default the first, else the scene is framed whole",
     ),
     "scene-name": Setting("name-or-index", "NAME|INDEX", (), None, "which scene of the file; default the file's own"),
+    "variant": Setting(
+        "name-or-index",
+        "NAME|INDEX",
+        (),
+        None,
+        "which of the materials' variants that the file has (KHR_materials_variants); default none",
+    ),
     "frames": Setting("frames", "A-B[:STEP]|N,M,...", (), "0", "which frames are rendered"),
     "fps": Setting("rate", "N|N/M", (), None, "frame f shows the time f / fps; default the camera path's, else 24"),
     "animation": Setting("name-or-index", "NAME|INDEX|all", (), None, "which animation, or all; default the first"),

@@ -17,7 +17,7 @@ from ._report import MODES, Report
 
 T = TypeVar("T")
 
-_COMMON = ("camera", "camera-node", "animation", "scene-name", "environment", "device")
+_COMMON = ("camera", "camera-node", "animation", "scene-name", "variant", "environment", "device")
 
 
 def add(commands: Any) -> None:
