@@ -39,6 +39,7 @@ constexpr Extension readable[] = {
     {"KHR_draco_mesh_compression", draco_lacks},
     {"EXT_mesh_gpu_instancing"},
     {"EXT_texture_webp", webp_lacks},
+    {"KHR_materials_pbrSpecularGlossiness"},
     {"KHR_materials_variants"},
     {"KHR_node_visibility"},
     {"MSFT_lod"},

@@ -9,6 +9,7 @@
 
 #include "scene/gltf_extensions.hpp"
 #include "scene/gltf_image.hpp"
+#include "scene/gltf_spec_gloss.hpp"
 
 namespace sheaf {
 namespace {
@@ -35,14 +36,25 @@ class MaterialReader {
     file_.require("materials", index);
     Material out;
     out.name = source.name;
-    read_table(object, out);
+    const json* const spec_gloss = extension(object, spec_gloss_);
+    if (spec_gloss != nullptr) {
+      json rest = object;  // the extension's values hold, whatever stands beside it for readers that lack it
+      rest.erase(pbr_);
+      read_table(rest, out);
+      read_spec_gloss(index, *spec_gloss, out);
+    } else {
+      read_table(object, out);
+    }
     read_surface(source, out);
     read_extensions(object, out);
     return out;
   }
 
   // Only images that a material reads are decoded; Scene::images follows the order of their first use.
-  void decode_used_images() { scene_.images = decode_images(file_, image_order_); }
+  void decode_used_images() {
+    scene_.images = decode_images(file_, image_order_);
+    convert_spec_gloss(file_, spec_gloss_materials_, scene_);
+  }
 
  private:
   // The object that a line of the table names as its owner; null where the file has none.
@@ -86,6 +98,30 @@ class MaterialReader {
       out = read(*value);
     else
       for (int c = 0; c < Factor::length(); ++c) out[c] = read((*value)[static_cast<std::size_t>(c)]);
+  }
+
+  void read_spec_gloss(std::size_t index, const json& e, Material& out) {
+    SpecGlossMaterial material{
+        index, {}, texture_use(e, "diffuseTexture"), texture_use(e, "specularGlossinessTexture")};
+    const auto read = [&](const char* key, const json& value) {
+      return clamped(file_, place_ + "." + key, value.get<double>(), 0, 1);
+    };
+    const auto components = [&](const char* key, auto& factor) {
+      if (const json* values = member(e, key))
+        for (int c = 0; c < factor.length(); ++c) factor[c] = read(key, (*values)[static_cast<std::size_t>(c)]);
+    };
+    components("diffuseFactor", material.factors.diffuse);
+    components("specularFactor", material.factors.specular);
+    if (const json* value = member(e, "glossinessFactor"))
+      material.factors.glossiness = read("glossinessFactor", *value);
+    if (material.diffuse.present() || material.specular_glossiness.present()) {
+      spec_gloss_materials_.push_back(material);
+    } else {
+      const MetalRough surface = to_metal_rough(material.factors);
+      out.base_color = surface.base_color;
+      out.metallic = surface.metallic;
+      out.roughness = surface.roughness;
+    }
   }
 
   // KHR_materials_ior gives 0 the meaning of an infinite index, where everything is mirrored. 1000 comes within 0.4 %
@@ -213,12 +249,14 @@ class MaterialReader {
   }
 
   static constexpr const char* pbr_ = "pbrMetallicRoughness";
+  static constexpr const char* spec_gloss_ = "KHR_materials_pbrSpecularGlossiness";
   static constexpr double any_ = std::numeric_limits<float>::max();
   GltfFile& file_;
   Scene& scene_;
   std::string place_;
   std::map<std::uint32_t, std::uint32_t> textures_, images_;  // index in the file to index in the scene
   std::vector<std::uint32_t> image_order_;
+  std::vector<SpecGlossMaterial> spec_gloss_materials_;
 };
 
 }  // namespace

@@ -226,7 +226,14 @@ std::vector<SchemaGroup> material_rules() {
        {{"KHR_materials_emissive_strength", JsonKind::object},
         {"MSFT_lod", JsonKind::object},
         {"KHR_materials_unlit", JsonKind::object},
+        {"KHR_materials_pbrSpecularGlossiness", JsonKind::object},
         {"KHR_materials_volume", JsonKind::object}}},
+      {"materials[].extensions.KHR_materials_pbrSpecularGlossiness",
+       {{"diffuseFactor", JsonKind::numbers, "", -any, any, 4},
+        {"specularFactor", JsonKind::numbers, "", -any, any, 3},
+        {"glossinessFactor", JsonKind::number},
+        {"diffuseTexture", JsonKind::object},
+        {"specularGlossinessTexture", JsonKind::object}}},
       {"materials[].extensions.MSFT_lod", {{"ids", JsonKind::indices, "materials", -any, any, 0, true}}},
       {"materials[].extensions.KHR_materials_emissive_strength", {{"emissiveStrength", JsonKind::number}}},
       {"materials[].extensions.KHR_materials_volume",
@@ -251,6 +258,8 @@ std::vector<SchemaGroup> material_rules() {
   MATERIAL_TEXTURES(SHEAF_TEXTURE)
 #undef SHEAF_TEXTURE
   add_texture_rules(groups, "materials[].extensions.KHR_materials_volume.thicknessTexture");
+  for (const char* key : {"diffuseTexture", "specularGlossinessTexture"})
+    add_texture_rules(groups, std::string("materials[].extensions.KHR_materials_pbrSpecularGlossiness.") + key);
   return groups;
 }
 
