@@ -111,6 +111,13 @@ std::vector<std::uint8_t> values_of(const draco::Mesh& mesh, const DracoAttribut
   if (attribute->num_components() != wanted.width)
     throw Fault{name + " has " + std::to_string(attribute->num_components()) + " components, its accessor " +
                 std::to_string(wanted.width)};
+  const draco::DataType type = attribute->data_type();
+  const bool of_gltf = (type >= draco::DT_INT8 && type <= draco::DT_UINT32) || type == draco::DT_FLOAT32;
+  if (!of_gltf) throw Fault{name + " is of a type that glTF does not have"};
+  const auto stored = static_cast<std::uint64_t>(attribute->byte_stride()) * attribute->size();
+  const auto element = static_cast<std::uint64_t>(draco::DataTypeLength(type)) * attribute->num_components();
+  if (attribute->byte_stride() < static_cast<std::int64_t>(element) || attribute->buffer()->data_size() < stored)
+    throw Fault{name + " is damaged"};
   switch (wanted.component_type) {
     case 5120:
       return values_of<std::int8_t>(*attribute, mesh.num_points());
