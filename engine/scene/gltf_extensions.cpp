@@ -42,6 +42,7 @@ constexpr Extension readable[] = {
     {"KHR_materials_pbrSpecularGlossiness"},
     {"KHR_materials_variants"},
     {"KHR_node_visibility"},
+    {"KHR_texture_basisu"},
     {"MSFT_lod"},
 };
 

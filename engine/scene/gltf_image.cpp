@@ -42,6 +42,7 @@ struct Codec {
 };
 
 constexpr Codec codecs[] = {
+    {"KTX2", read_ktx2_head, decode_ktx2},
 #ifdef SHEAF_HAS_WEBP
     {"WebP", read_webp_head, decode_webp},
 #else

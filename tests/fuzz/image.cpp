@@ -15,14 +15,17 @@ struct Codec {
 constexpr Codec codecs[] = {
 #ifdef SHEAF_HAS_WEBP
     {sheaf::read_webp_head, sheaf::decode_webp},
+#else
+    {},
 #endif
+    {sheaf::read_ktx2_head, sheaf::decode_ktx2},
 };
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sheaf;
-  if (size == 0 || data[0] >= std::size(codecs)) return 0;
+  if (size == 0 || data[0] >= std::size(codecs) || codecs[data[0]].head == nullptr) return 0;
   const std::span<const std::uint8_t> file(data + 1, size - 1);
   const ImageHead head = codecs[data[0]].head(file);
   if (!head.fault.empty() || head.width > 2048 || head.height > 2048) return 0;

@@ -84,7 +84,7 @@ TEST(MalformedFile, Images) {
     b.doc["materials"][0]["normalTexture"] = {{"index", 0}};
     expect_refused(b.text(), expected);
   };
-  refused("\xabKTX 20\xbb\r\n\x1a\n", "images[0]: KTX2 images are not supported");
+  refused("\xabKTX 20\xbb\r\n\x1a\n", "images[0]: is a KTX2 file that is cut short");
   refused("GIF89a..........", "images[0]: GIF images are not supported");
   refused("\x89PNG\r\n\x1a\n", "images[0]: is not a valid PNG");
   // Data of more than 2 GiB, by its length: stb_image says no reason then.
