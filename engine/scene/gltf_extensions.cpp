@@ -44,6 +44,7 @@ constexpr Extension readable[] = {
     {"KHR_node_visibility"},
     {"KHR_texture_basisu"},
     {"MSFT_lod"},
+    {"MSFT_texture_dds"},
 };
 
 // Names that files use though no specification of the registry defines them (yet, or any more).

@@ -43,6 +43,7 @@ struct Codec {
 
 constexpr Codec codecs[] = {
     {"KTX2", read_ktx2_head, decode_ktx2},
+    {"DDS", read_dds_head, decode_dds},
 #ifdef SHEAF_HAS_WEBP
     {"WebP", read_webp_head, decode_webp},
 #else

@@ -223,7 +223,7 @@ class MaterialReader {
   // That of an extension before the texture's own, which is there for readers that lack the extension.
   [[nodiscard]] std::uint32_t image_of(std::size_t index) const {
     const json& texture = file_.json["textures"][index];
-    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+    for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds"}) {
       const json* source = reads_extension(name) ? extension(texture, name) : nullptr;
       if (source != nullptr) source = member(*source, "source");
       if (source != nullptr) return source->get<std::uint32_t>();

@@ -88,7 +88,11 @@ std::vector<SchemaGroup> storage_rules() {
        {{"sampler", JsonKind::index, "samplers"},
         {"source", JsonKind::index, "images"},
         {"extensions", JsonKind::object}}},
-      {"textures[].extensions", {{"EXT_texture_webp", JsonKind::object}, {"KHR_texture_basisu", JsonKind::object}}},
+      {"textures[].extensions",
+       {{"EXT_texture_webp", JsonKind::object},
+        {"KHR_texture_basisu", JsonKind::object},
+        {"MSFT_texture_dds", JsonKind::object}}},
+      {"textures[].extensions.MSFT_texture_dds", {{"source", JsonKind::index, "images"}}},
       {"textures[].extensions.KHR_texture_basisu", {{"source", JsonKind::index, "images"}}},
       {"textures[].extensions.EXT_texture_webp", {{"source", JsonKind::index, "images"}}},
   };

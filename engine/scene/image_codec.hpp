@@ -24,6 +24,9 @@ using DecodeImage = std::string (*)(std::span<const std::uint8_t> file, Image& i
 ImageHead read_webp_head(std::span<const std::uint8_t> file);
 std::string decode_webp(std::span<const std::uint8_t> file, Image& image);
 
+ImageHead read_dds_head(std::span<const std::uint8_t> file);
+std::string decode_dds(std::span<const std::uint8_t> file, Image& image);
+
 ImageHead read_ktx2_head(std::span<const std::uint8_t> file);
 std::string decode_ktx2(std::span<const std::uint8_t> file, Image& image);
 

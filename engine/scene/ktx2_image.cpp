@@ -78,10 +78,6 @@ void read_format(Bytes file, std::uint32_t vulkan_format, Ktx2& out) {
     throw Fault{"is a KTX2 file of the colour model " + std::to_string(format[12]) + ", which is not supported"};
 }
 
-std::uint64_t blocks_of(const Ktx2& ktx) {
-  return ((std::uint64_t{ktx.width} + 3) / 4) * ((std::uint64_t{ktx.height} + 3) / 4);
-}
-
 void check_scheme(const Ktx2& ktx) {
   if ((ktx.scheme == scheme_basis) != (ktx.layout == Layout::etc1s) || ktx.scheme > scheme_zlib)
     throw Fault{"is a KTX2 file whose supercompression scheme " + std::to_string(ktx.scheme) + " is not supported"};
@@ -89,8 +85,8 @@ void check_scheme(const Ktx2& ktx) {
   if (ktx.scheme == scheme_zstd) throw Fault{"is compressed by Zstandard, and this build lacks libzstd"};
 #endif
   if (ktx.layout == Layout::etc1s) return;
-  const std::uint64_t expected =
-      ktx.layout == Layout::uastc ? blocks_of(ktx) * 16 : std::uint64_t{ktx.width} * ktx.height * ktx.channels;
+  const std::uint64_t expected = ktx.layout == Layout::uastc ? block_count(ktx.width, ktx.height) * 16
+                                                             : std::uint64_t{ktx.width} * ktx.height * ktx.channels;
   if (ktx.unpacked != expected)
     throw Fault{"is a KTX2 file whose finest level has " + std::to_string(ktx.unpacked) + " bytes, not " +
                 std::to_string(expected)};
@@ -142,18 +138,6 @@ void decode_bytes(Bytes level, unsigned channels, Image& image) {
     std::copy_n(&level[t * channels], channels, &image.rgba[t * 4]);
 }
 
-void decode_uastc_blocks(Bytes level, bool srgb, Image& image) {
-  for (std::uint32_t y = 0; y < image.height; y += 4) {
-    for (std::uint32_t x = 0; x < image.width; x += 4, level = level.subspan(16)) {
-      const BlockTexels texels = decode_uastc(level.first<16>(), srgb);
-      for (std::uint32_t row = 0; row < std::min(4u, image.height - y); ++row)
-        for (std::uint32_t column = 0; column < std::min(4u, image.width - x); ++column)
-          std::ranges::copy(texels[row * 4 + column],
-                            &image.rgba[(std::size_t{y + row} * image.width + x + column) * 4]);
-    }
-  }
-}
-
 void decode_etc1s(const Ktx2& ktx, Image& image) {
   constexpr unsigned rgb = 7, green = 2, alpha = 8, channel_rrr = 3, channel_ggg = 4;
   const auto global = read_basis_global(ktx.global, ktx.images);
@@ -194,7 +178,7 @@ std::string decode_ktx2(Bytes file, Image& image) {
     }
     const Bytes level = unpacked_level(ktx, storage);
     if (ktx.layout == Layout::uastc)
-      decode_uastc_blocks(level, ktx.srgb, image);
+      decode_blocks(level, 16, image, [&](Bytes block) { return decode_uastc(block.first<16>(), ktx.srgb); });
     else
       decode_bytes(level, ktx.channels, image);
     return {};

@@ -19,6 +19,7 @@ constexpr Codec codecs[] = {
     {},
 #endif
     {sheaf::read_ktx2_head, sheaf::decode_ktx2},
+    {sheaf::read_dds_head, sheaf::decode_dds},
 };
 
 }  // namespace
