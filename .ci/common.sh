@@ -35,10 +35,11 @@ prepare() { # packages and the Python environment
   fi
 
   headline "python environment"
-  stamp=$(sha256sum client/pyproject.toml .ci/requirements.txt | sha256sum)
+  stamp=$(sha256sum client/pyproject.toml .ci/requirements.txt .ci/optional.txt | sha256sum)
   if [[ ! -x $venv/bin/pytest || $(cat "$venv/stamp" 2>/dev/null) != "$stamp" ]]; then
     python3 -m venv --clear "$venv"
     quietly pip "$venv/bin/pip" install --disable-pip-version-check -e './client[dev]' -r .ci/requirements.txt
+    "$venv/bin/pip" install -q --disable-pip-version-check -r .ci/optional.txt || echo "without some of .ci/optional.txt"
     printf '%s\n' "$stamp" >"$venv/stamp"
   fi
   "$venv/bin/python" --version
