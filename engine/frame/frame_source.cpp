@@ -58,6 +58,7 @@ void describe(const Scene& scene, const Features& features, const RenderOptions&
   stats.scene.materials = scene.materials.size();
   stats.scene.lights = features.default_light ? 0 : features.lights;
   stats.scene.features = features.names();
+  stats.scene.extensions_read = scene.extensions_read;
   stats.scene.extensions_ignored = scene.extensions_ignored;
   stats.scene.warnings = scene.warnings;
 }

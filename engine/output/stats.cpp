@@ -172,6 +172,7 @@ Json scene_json(const SceneStats& scene) {
           {"lights", scene.lights},
           {"materials", scene.materials},
           {"features", scene.features},
+          {"extensions_read", scene.extensions_read},
           {"extensions_ignored", scene.extensions_ignored},
           {"warnings", scene.warnings}};
 }

@@ -58,7 +58,7 @@ struct LeftOut {
 
 struct SceneStats {
   std::uint64_t triangles = 0, instances = 0, meshes = 0, lights = 0, materials = 0;
-  std::vector<std::string> features, extensions_ignored, warnings;
+  std::vector<std::string> features, extensions_read, extensions_ignored, warnings;
 };
 
 struct RunStats {

@@ -28,6 +28,7 @@ const char* format_of(Bytes bytes) {
   if (head.starts_with("\xabKTX")) return "KTX";
   if (head.starts_with("DDS ")) return "DDS";
   if (head.starts_with("RIFF") && head.substr(8) == "WEBP") return "WebP";
+  if (head.size() == 12 && head.substr(4).starts_with("ftypavi")) return "AVIF";
   if (head.starts_with("GIF8")) return "GIF";
   if (head.starts_with("BM")) return "BMP";
   return "unknown";

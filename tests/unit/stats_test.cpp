@@ -22,7 +22,7 @@ RunStats sample() {
                .left_out = {},
                .frames = {},
                .settings = {{"spp", 4}}};
-  run.scene = {100, 2, 3, 1, 4, {"reflection"}, {"KHR_x"}, {"no tangents"}};
+  run.scene = {100, 2, 3, 1, 4, {"reflection"}, {"KHR_y"}, {"KHR_x"}, {"no tangents"}};
   run.left_out = {{"refraction", "no transmissive material"}};
   FrameStats counted{.frame = 12,
                      .time_s = 0.5,
@@ -87,7 +87,7 @@ TEST(StatsJson, RunHasTheSchemasNames) {
     "schema": 1, "version": "0.1.0", "device": {"name": "llvmpipe", "driver": "Mesa 25.0"}, "strategy": "hybrid",
     "chosen_because": "reflections", "settings": {"spp": 4},
     "scene": {"triangles": 100, "instances": 2, "meshes": 3, "lights": 1, "materials": 4, "features": ["reflection"],
-              "extensions_ignored": ["KHR_x"], "warnings": ["no tangents"]},
+              "extensions_read": ["KHR_y"], "extensions_ignored": ["KHR_x"], "warnings": ["no tangents"]},
     "left_out": [{"stage": "refraction", "reason": "no transmissive material"}]})"));
 }
 
