@@ -57,7 +57,19 @@ const Codec* codec_of(std::string_view format) {
   return found == std::end(codecs) ? nullptr : found;
 }
 
+// A chunk of texels in a PNG that claims more bytes than there are: stb_image takes memory for all that it claims.
+bool has_overlong_texels(Bytes png) {
+  const auto word = [&](std::size_t at) {
+    return std::uint64_t{png[at]} << 24 | png[at + 1] << 16 | png[at + 2] << 8 | png[at + 3];
+  };
+  constexpr std::uint64_t texels = 0x49444154, chunk_overhead = 12;  // IDAT; length, type and checksum
+  for (std::uint64_t at = 8; at + 8 <= png.size(); at += word(at) + chunk_overhead)
+    if (word(at + 4) == texels && word(at) > png.size() - at - 8) return true;
+  return false;
+}
+
 ImageHead read_stb_head(Bytes bytes, const std::string& format) {
+  if (format == "PNG" && has_overlong_texels(bytes)) return {0, 0, "cannot be decoded: it is damaged"};
   int width = 0, height = 0, channels = 0;
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) || width <= 0 ||

@@ -91,6 +91,9 @@ TEST(MalformedFile, Images) {
   const char endless[] =
       "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\1\b\2\0\0\0\x7b\x40\xe8\xdd\xdd\0\0\x12IDAT\x01\x01\a\0";
   refused(std::string(endless, sizeof endless - 1), "images[0]: cannot be decoded: it is damaged");
+  // A header of 1 x 1 texels, then texels of 1 GiB of which there is nothing.
+  const char claims[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\0\0\0\0\x3a\x7e\x9b\x55\x40\0\0\0IDAT\x78";
+  refused(std::string(claims, sizeof claims - 1), "images[0]: cannot be decoded: it is damaged");
   refused("nothing at all", "images[0]: unknown images are not supported");
 }
 
