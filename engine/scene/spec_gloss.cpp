@@ -22,13 +22,12 @@ double metallic_of(double diffuse, double specular) {
   return std::clamp((root - b) / (2 * dielectric), 0.0, 1.0);
 }
 
+double linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+
 double from_srgb(std::uint8_t value) {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> out{};
-    for (std::size_t i = 0; i < 256; ++i) {
-      const double v = static_cast<double>(i) / 255;
-      out[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-    }
+    for (std::size_t i = 0; i < 256; ++i) out[i] = linear(static_cast<double>(i) / 255);
     return out;
   }();
   return table[value];
@@ -36,8 +35,14 @@ double from_srgb(std::uint8_t value) {
 
 std::uint8_t to_byte(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255)); }
 
+// The nearest, by the values half way between two: a search costs less than a power.
 std::uint8_t to_srgb(double value) {
-  return to_byte(value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055);
+  static const std::array<double, 255> limits = [] {
+    std::array<double, 255> out{};
+    for (std::size_t i = 0; i < 255; ++i) out[i] = linear((static_cast<double>(i) + 0.5) / 255);
+    return out;
+  }();
+  return static_cast<std::uint8_t>(std::ranges::upper_bound(limits, value) - limits.begin());
 }
 
 // The texel of `image` at the centre of texel (x, y) of an image of `width` by `height`; rgb is sRGB, alpha is not.
