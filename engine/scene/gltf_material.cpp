@@ -16,10 +16,12 @@ namespace {
 
 using nlohmann::json;
 
-// A factor outside its range is brought into it with a warning: renderers do that silently, authors want to know.
+// A factor outside its range is brought into it with a warning: renderers do that silently, authors want to know. What
+// a writer's rounding adds is no fault of the author's.
 float clamped(GltfFile& file, const std::string& place, double value, double lo, double hi) {
+  constexpr double rounding = 1e-6;
   const double inside = std::clamp(value, lo, hi);
-  if (inside != value) {
+  if (std::abs(inside - value) > rounding) {
     file.warn(place, std::to_string(value) + " is outside its range, " + std::to_string(inside) + " is used");
   }
   return static_cast<float>(inside);

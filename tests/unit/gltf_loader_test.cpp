@@ -167,5 +167,17 @@ TEST(GltfLoader, EveryAssetLoadsOrIsRefusedByName) {
   EXPECT_GT(loaded, 0);
 }
 
+TEST(GltfLoader, FactorsOutOfRangeAreNamedUnlessItIsRounding) {
+  GltfBuilder b = whole_document();
+  b.doc["meshes"][0]["primitives"][0]["material"] = 0;
+  b.doc["materials"] = {{{"pbrMetallicRoughness", {{"roughnessFactor", 1.00000001}}}}};
+  Scene scene = load(b);
+  EXPECT_FALSE(warns(scene, "outside its range")) << all_of(scene.warnings);
+  EXPECT_EQ(scene.materials[0].roughness, 1);
+  b.doc["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 1.01;
+  scene = load(b);
+  EXPECT_TRUE(warns(scene, "roughnessFactor: 1.010000 is outside its range, 1.000000 is used"));
+}
+
 }  // namespace
 }  // namespace sheaf
