@@ -4,38 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "sampling/sobol.hpp"
+
 namespace sheaf {
 namespace {
-
-std::uint32_t reversed(std::uint32_t x) {
-  x = (x & 0x55555555U) << 1U | (x >> 1U & 0x55555555U);
-  x = (x & 0x33333333U) << 2U | (x >> 2U & 0x33333333U);
-  x = (x & 0x0F0F0F0FU) << 4U | (x >> 4U & 0x0F0F0F0FU);
-  x = (x & 0x00FF00FFU) << 8U | (x >> 8U & 0x00FF00FFU);
-  return x << 16U | x >> 16U;
-}
-
-// Owen's nested scrambling by a hash in which a bit depends on lower bits alone, on the reversed number (Laine, Karras,
-// "Stratified Sampling for Stochastic Transparency", 2011; Burley, "Practical Hash-based Owen Scrambling", JCGT 2020).
-std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
-  x = reversed(x) + seed;
-  x ^= x * 0x6c50b47cU;
-  x ^= x * 0xb82f1e52U;
-  x ^= x * 0xc7afe638U;
-  x ^= x * 0x8d22f6e6U;
-  return reversed(x);
-}
-
-// The second dimension of Sobol's sequence: direction numbers of the polynomial x + 1.
-std::uint32_t sobol_second(std::uint32_t i) {
-  std::uint32_t result = 0;
-  for (std::uint32_t direction = 1U << 31U; i != 0; i >>= 1U, direction ^= direction >> 1U)
-    if ((i & 1U) != 0) result ^= direction;
-  return result;
-}
-
-// Of 4000 pairs tried, the one with the least error over random edges through a Gaussian pixel, at 2 to 64 samples.
-constexpr std::uint32_t seed_x = 2739228269U, seed_y = 2642154135U;
 
 constexpr double radius = 1.5, deviation = 0.5;
 
@@ -56,11 +28,6 @@ double gaussian_offset(double u) {
 
 }  // namespace
 
-glm::dvec2 sequence_point(std::uint32_t i) {
-  constexpr double unit = 1.0 / 4294967296.0;
-  return {scrambled(reversed(i), seed_x) * unit, scrambled(sobol_second(i), seed_y) * unit};
-}
-
 double filter_offset(PixelFilter filter, double u) {
   switch (filter) {
     case PixelFilter::box:
@@ -78,7 +45,7 @@ std::vector<glm::dvec2> pixel_samples(PixelFilter filter, std::uint32_t count) {
   std::vector<glm::dvec2> samples;
   samples.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::dvec2 u = sequence_point(i);
+    const glm::dvec2 u = sample_point(SamplePair::pixel, i);
     samples.emplace_back(0.5 + filter_offset(filter, u.x), 0.5 + filter_offset(filter, u.y));
   }
   return samples;

@@ -18,10 +18,6 @@ enum class PixelFilter : std::uint32_t {
 };
 constexpr auto choice_names(PixelFilter) { return std::array{"box", "triangle", "gaussian"}; }
 
-/// Point i of the sequence in [0, 1)². Every run of 2^k points that begins at a multiple of 2^k is a (0, k, 2)-net:
-/// it has one point in each of the 2^k boxes of size 2^-j × 2^(j-k), for every j.
-[[nodiscard]] glm::dvec2 sequence_point(std::uint32_t i);
-
 /// The offset from a pixel's centre, in pixels, below which the share u of the filter's weight lies. 0 ≤ u ≤ 1.
 [[nodiscard]] double filter_offset(PixelFilter filter, double u);
 

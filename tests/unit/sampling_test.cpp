@@ -8,23 +8,51 @@
 
 #include "sampling/adaptive_pixels.hpp"
 #include "sampling/pixel_samples.hpp"
+#include "sampling/sobol.hpp"
 
 namespace sheaf {
 namespace {
 
 // Every run of 2^k points from a multiple of 2^k has one point in each box of size 2^-j × 2^(j-k).
-TEST(Sampling, PointsAreNets) {
-  for (const std::uint32_t begin : {0U, 64U, 192U, 4096U})
-    for (std::uint32_t k = 0; k <= 6; ++k)
-      for (std::uint32_t j = 0; j <= k; ++j) {
-        std::set<std::pair<int, int>> boxes;
-        for (std::uint32_t i = 0; i < 1U << k; ++i) {
-          const glm::dvec2 p = sequence_point(begin + i);
-          boxes.insert({static_cast<int>(std::ldexp(p.x, static_cast<int>(j))),
-                        static_cast<int>(std::ldexp(p.y, static_cast<int>(k - j)))});
+TEST(Sampling, PointsOfEachPairAreNets) {
+  for (std::uint32_t pair = 0; pair < sample_pairs; ++pair)
+    for (const std::uint32_t begin : {0U, 64U, 192U, 4096U})
+      for (std::uint32_t k = 0; k <= 6; ++k)
+        for (std::uint32_t j = 0; j <= k; ++j) {
+          std::set<std::pair<int, int>> boxes;
+          for (std::uint32_t i = 0; i < 1U << k; ++i) {
+            const glm::dvec2 p = sample_point(SamplePair{pair}, begin + i);
+            boxes.insert({static_cast<int>(std::ldexp(p.x, static_cast<int>(j))),
+                          static_cast<int>(std::ldexp(p.y, static_cast<int>(k - j)))});
+          }
+          EXPECT_EQ(boxes.size(), 1U << k) << "pair " << pair << ", from " << begin << ", k " << k << ", j " << j;
         }
-        EXPECT_EQ(boxes.size(), 1U << k) << "from " << begin << ", k " << k << ", j " << j;
+}
+
+// 64 independent points leave 23 of 64 boxes empty; the same scrambled index in both pairs would leave 56 empty.
+TEST(Sampling, PairsAreIndependentOfEachOther) {
+  for (std::uint32_t a = 0; a < 2 * sample_pairs; ++a)
+    for (std::uint32_t b = 0; b < a - a % 2; ++b) {
+      std::set<std::pair<int, int>> boxes;
+      double product = 0;
+      for (std::uint32_t i = 0; i < 64; ++i) {
+        const double x = sample_point(SamplePair{a / 2}, i)[static_cast<int>(a % 2)];
+        const double y = sample_point(SamplePair{b / 2}, i)[static_cast<int>(b % 2)];
+        boxes.insert({static_cast<int>(8 * x), static_cast<int>(8 * y)});
+        product += 12 * (x - 0.5) * (y - 0.5) / 64;
       }
+      EXPECT_GE(boxes.size(), 24U) << "dimensions " << a << " and " << b;
+      EXPECT_LT(std::abs(product), 0.35) << "dimensions " << a << " and " << b;
+    }
+}
+
+// The sequence is part of what a picture is: its first points, as they have always been.
+TEST(Sampling, PixelPointsStay) {
+  const glm::dvec2 first = sample_point(SamplePair::pixel, 0), fifth = sample_point(SamplePair::pixel, 5);
+  EXPECT_DOUBLE_EQ(first.x * 0x1p32, 2584794062.0);
+  EXPECT_DOUBLE_EQ(first.y * 0x1p32, 3453322835.0);
+  EXPECT_DOUBLE_EQ(fifth.x * 0x1p32, 1575361563.0);
+  EXPECT_DOUBLE_EQ(fifth.y * 0x1p32, 4081640433.0);
 }
 
 TEST(Sampling, LongerListsBeginWithShorterOnes) {
